@@ -1,0 +1,106 @@
+#ifndef nodus_bulk_boundary_conditions_h
+#define nodus_bulk_boundary_conditions_h
+
+#include <nodus/mesh/region.h>
+#include <nodus/parameters.h>
+#include <nodus/types.h>
+
+#include <deal.II/base/function_parser.h>
+#include <deal.II/base/index_set.h>
+#include <deal.II/fe/mapping.h>
+#include <deal.II/lac/affine_constraints.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Nodus
+{
+  /// Prescribed displacements of all displacement conditions, and the list of load conditions.
+  class BoundaryConditions
+  {
+  public:
+    /// A load condition ready for quadrature: value at (X, t) has as many entries as the condition's components.
+    struct Load
+    {
+      const BoundaryConditionParameters *parameters;
+      Region                             region;
+      dealii::FunctionParser<dim>       *value; ///< time-dependent: set_time(t), then value(X, component)
+    };
+
+    /// @throws InputError, on every rank: bad expression, a region without any node (displacement), face (traction,
+    /// pressure, spring) or cell (body force), two conditions that prescribe different values for the same degree of
+    /// freedom at t = 0, end_time/2 or end_time. The predicate of a region is evaluated at nodes, at the centres of
+    /// faces and at the centres of cells, respectively; body forces ignore boundary ids.
+    BoundaryConditions(const std::vector<BoundaryConditionParameters> &parameters,
+                       const Bodies                                   &bodies,
+                       const dealii::DoFHandler<dim>                  &dof_handler,
+                       const dealii::Mapping<dim>                     &mapping,
+                       double                                          end_time);
+
+    /// Evaluates the prescribed displacements at time @p t. Collective.
+    void set_time(double t);
+
+    /// Homogeneous constraints at the prescribed degrees of freedom (and hanging nodes), locally relevant lines,
+    /// closed.
+    const dealii::AffineConstraints<double> &homogeneous_constraints() const
+    {
+      return homogeneous_;
+    }
+
+    /// The same lines with inhomogeneity prescribed(t) - u, so that the next Newton correction meets the
+    /// prescribed value. @p u has ghost entries. The reference stays valid until the next call.
+    const dealii::AffineConstraints<double> &increment_constraints(const Vector &u);
+
+    std::vector<Load> &loads()
+    {
+      return loads_;
+    }
+
+    /// Displacement conditions whose reactions are reported. A degree of freedom belongs to the first condition that
+    /// prescribes it; the sum of the residual over owned dofs and ranks is the reaction.
+    struct ReactionRegion
+    {
+      std::string           name;
+      std::vector<DoFIndex> dofs[dim]; ///< owned dofs of component c that this condition prescribes
+    };
+    const std::vector<ReactionRegion> &reaction_regions() const
+    {
+      return reaction_regions_;
+    }
+
+  private:
+    /// A prescribed degree of freedom that is not a hanging node.
+    struct Prescribed
+    {
+      DoFIndex     dof;
+      Point        X;
+      unsigned int condition; ///< index into functions_
+      unsigned int entry;     ///< which of the condition's expressions
+      double       value;     ///< at the current time
+    };
+    struct Held; ///< the condition and the place of an owned prescribed degree of freedom
+
+    void                     add_loads(const Bodies &bodies, const dealii::DoFHandler<dim> &dof_handler);
+    std::map<DoFIndex, Held> find_held(const Bodies                  &bodies,
+                                       const dealii::DoFHandler<dim> &dof_handler,
+                                       const dealii::Mapping<dim>    &mapping,
+                                       double                         end_time);
+    void                     collect_prescribed(const std::map<DoFIndex, Held> &held,
+                                                const dealii::DoFHandler<dim>  &dof_handler,
+                                                const dealii::Mapping<dim>     &mapping);
+    void                     make_constraints(const dealii::DoFHandler<dim> &dof_handler);
+    std::string              label(unsigned int condition) const;
+
+    std::vector<BoundaryConditionParameters>                  parameters_;
+    std::vector<std::unique_ptr<dealii::FunctionParser<dim>>> functions_;
+    std::vector<Prescribed>                                   prescribed_; ///< locally relevant
+    dealii::AffineConstraints<double>                         lines_;      ///< not closed: hanging nodes unresolved
+    dealii::AffineConstraints<double>                         homogeneous_, increment_;
+    std::vector<Load>                                         loads_;
+    std::vector<ReactionRegion>                               reaction_regions_;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,51 @@
+#ifndef nodus_bulk_material_h
+#define nodus_bulk_material_h
+
+#include <nodus/parameters.h>
+
+#include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/base/tensor.h>
+
+#include <memory>
+
+namespace Nodus
+{
+  /// A hyperelastic law: second Piola-Kirchhoff stress and its material tangent.
+  class Material
+  {
+  public:
+    virtual ~Material() = default;
+
+    /// True for laws of the linearised strain: F - I enters through its symmetric part only, no geometric
+    /// stiffness, and the stress is at once S, P and Cauchy.
+    virtual bool small_strain() const
+    {
+      return false;
+    }
+
+    /// @param F deformation gradient, det F > 0 is the caller's duty
+    /// @param S second Piola-Kirchhoff stress [pressure]
+    /// @param C dS/dE, E Green-Lagrange strain [pressure]; not computed when null
+    virtual void evaluate(const dealii::Tensor<2, dim>    &F,
+                          dealii::SymmetricTensor<2, dim> &S,
+                          dealii::SymmetricTensor<4, dim> *C) const = 0;
+
+    /// Stored energy per reference volume, zero at F = I.
+    virtual double energy(const dealii::Tensor<2, dim> &F) const = 0;
+
+    /// Initial Young's modulus, the stiffness scale of the contact augmentation.
+    virtual double youngs_modulus() const = 0;
+
+    /// Cauchy stress at F.
+    dealii::SymmetricTensor<2, dim> cauchy_stress(const dealii::Tensor<2, dim> &F) const;
+
+  protected:
+    /// (A_ik A_jl + A_il A_jk)/2; for A = C^-1 it is -dC^-1/dC.
+    static dealii::SymmetricTensor<4, dim> symmetric_square(const dealii::SymmetricTensor<2, dim> &A);
+  };
+
+  /// @throws InputError when E and nu are not those of a stable material.
+  std::unique_ptr<Material> make_material(const MaterialParameters &parameters);
+} // namespace Nodus
+
+#endif

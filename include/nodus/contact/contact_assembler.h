@@ -1,0 +1,70 @@
+#ifndef nodus_contact_contact_assembler_h
+#define nodus_contact_contact_assembler_h
+
+#include <nodus/contact/jump_operator.h>
+#include <nodus/contact/pairing.h>
+#include <nodus/contact/status.h>
+#include <nodus/contact/surface.h>
+#include <nodus/contact/surface_weights.h>
+#include <nodus/solve/linear_system.h>
+
+#include <array>
+#include <vector>
+
+namespace Nodus
+{
+  /// Nodal values that the contact terms depend on; the same on every rank.
+  struct ContactState
+  {
+    std::vector<Point>   x;          ///< current positions of the surface nodes
+    std::vector<Vector3> increment;  ///< their displacement since the start of the load step
+    std::vector<Vector3> prescribed; ///< what the next correction must add at prescribed components, zero elsewhere
+    std::vector<double>  lambda;     ///< per slave node [pressure]
+    std::vector<std::array<double, 2>> Lambda; ///< per slave node, in its tangent frame
+  };
+
+  /// Contact and friction terms of the residual (eq. 10-15), per slave node.
+  struct ContactResidual
+  {
+    std::vector<Vector3>               jump; ///< work conjugate to the nodal jump: minus the force on the slave [force]
+    std::vector<double>                lambda; ///< contact law [volume]
+    std::vector<std::array<double, 2>> Lambda; ///< friction law
+  };
+
+  /// Residual and symmetric tangent of contact and friction for frozen pairing, statuses and threshold.
+  ///
+  /// Every product of two contact fields is a sum over the points of SurfaceWeights of nodally filtered fields
+  /// (eq. 32-34): contact S, stick S S_f, slip S (1 - S_f), open 1 - S.
+  class ContactAssembler
+  {
+  public:
+    ContactAssembler(const ContactSurfaces &surfaces,
+                     const Pairing         &pairing,
+                     const JumpOperator    &jump,
+                     const SurfaceWeights  &weights,
+                     const Status          &status);
+
+    /// Fills the contact couplings, the multiplier scale and the multiplier blocks of the right-hand side of @p system;
+    /// subtracts the contact forces from its displacement block (free components only). Collective.
+    ContactResidual assemble(const ContactState &state, LinearSystem &system) const;
+
+    /// Adds the contact force residual G^T R_jump to all components, prescribed ones too. Collective (compresses).
+    void add_forces(const ContactResidual &residual, Vector &force) const;
+
+    /// Largest relative violation of the contact and friction laws: lengths over @p length, friction law absolute.
+    double norm(const ContactResidual &residual, double length) const;
+
+    /// d_n and the tangential jump of the increment at a slave node; zero where unpaired.
+    double                distance(const ContactState &state, unsigned int slave) const;
+    std::array<double, 2> slip(const ContactState &state, unsigned int slave) const;
+
+  private:
+    const ContactSurfaces &surfaces_;
+    const Pairing         &pairing_;
+    const JumpOperator    &jump_;
+    const SurfaceWeights  &weights_;
+    const Status          &status_;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,136 @@
+#ifndef nodus_contact_status_h
+#define nodus_contact_status_h
+
+#include <nodus/contact/surface.h>
+#include <nodus/parameters.h>
+#include <nodus/types.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace Nodus
+{
+  class Pairing;
+
+  /// Nodal quantities that the status tests look at.
+  struct StatusInput
+  {
+    std::vector<double>                pressure; ///< lambda_bar (weighted) or lambda (raw) [pressure]
+    std::vector<double>                distance; ///< d_n > 0 penetration [length]
+    std::vector<std::array<double, 2>> Lambda;   ///< friction semi-multiplier in the tangent frame
+    std::vector<std::array<double, 2>> slip;     ///< tangential jump of the step's displacement [length]
+  };
+
+  /// Contact status S, friction status S_f and frozen threshold mu lambda_s of every slave node.
+  class Status
+  {
+  public:
+    Status(const std::vector<ContactPairParameters> &pairs,
+           const ContactSurfaces                    &surfaces,
+           const std::vector<double>                &normal_augmentation);
+
+    bool contact(const unsigned int slave) const
+    {
+      return now_.contact[slave];
+    }
+    /// S_f: meaningful where friction() holds.
+    bool stick(const unsigned int slave) const
+    {
+      return now_.stick[slave];
+    }
+    /// mu lambda_s <= 0, frozen by the threshold loop.
+    double threshold(const unsigned int slave) const
+    {
+      return now_.threshold[slave];
+    }
+    /// In contact with a threshold above the relative floor; otherwise the node is frictionless.
+    bool friction(const unsigned int slave) const
+    {
+      return now_.contact[slave] && -now_.threshold[slave] > threshold_floor_;
+    }
+    ContactStatus status(const unsigned int slave) const
+    {
+      return !contact(slave)                   ? ContactStatus::open
+             : friction(slave) && stick(slave) ? ContactStatus::stick
+                                               : ContactStatus::slip;
+    }
+    /// rho_n = h_n of the node's pair [pressure/length].
+    double normal_augmentation(const unsigned int slave) const
+    {
+      return normal_augmentation_[surfaces_.slave_nodes()[slave].pair];
+    }
+    /// rho_tau = h_tau for a friction threshold: the friction traction is augmented as the normal one [1/length].
+    double tangential_augmentation(const unsigned int slave, const double threshold) const
+    {
+      const unsigned int pair = surfaces_.slave_nodes()[slave].pair;
+      return pairs_[pair].tangential_augmentation_factor * normal_augmentation_[pair] /
+             std::max(-threshold, threshold_floor_);
+    }
+
+    /// First pairing of the run: by gap, closed or open.
+    void initialize(const Pairing &pairing, const std::vector<double> &distance);
+    /// Imposes the state of one node: S, S_f and mu lambda_s.
+    void assign(unsigned int slave, bool contact, bool stick, double threshold);
+    /// Nodes that lost their partner open.
+    void inherit(const Pairing &pairing);
+
+    /// Freezes mu lambda_s from the weighted pressure; returns max|lambda - lambda_s| / max|lambda| and its node.
+    struct Change
+    {
+      double       value = 0.;
+      unsigned int slave = dealii::numbers::invalid_unsigned_int;
+    };
+    Change threshold_change(const std::vector<double> &weighted_pressure) const;
+    void   freeze_threshold(const std::vector<double> &weighted_pressure);
+    /// True when a pair has friction at all.
+    bool has_friction() const
+    {
+      return has_friction_;
+    }
+
+    /// Statuses forget which vectors this loop has visited.
+    void begin_loop();
+    struct Update
+    {
+      unsigned int              changes = 0;
+      unsigned int              period  = 0; ///< > 0: this status vector was visited that many passes ago
+      std::vector<unsigned int> slaves;      ///< that changed
+    };
+    /// Tests every node and flips those that contradict their status (theory eq. 2, 3, 7, 8).
+    Update update(const StatusInput &input);
+
+    unsigned int n_changes(const unsigned int slave) const
+    {
+      return n_changes_[slave];
+    }
+    const std::array<double, 2> &accumulated_slip(const unsigned int slave) const
+    {
+      return now_.slip[slave];
+    }
+
+    /// The increment converged: adds its slip and keeps the state; or goes back to the last kept one.
+    void commit(const std::vector<std::array<double, 2>> &slip);
+    void roll_back();
+
+  private:
+    struct State
+    {
+      std::vector<char>                  contact, stick;
+      std::vector<double>                threshold;
+      std::vector<std::array<double, 2>> slip;
+    };
+    void update_floor();
+
+    const std::vector<ContactPairParameters> &pairs_;
+    const ContactSurfaces                    &surfaces_;
+    std::vector<double>                       normal_augmentation_;
+    bool                                      has_friction_;
+    State                                     now_, committed_;
+    double                                    threshold_floor_ = 0.;
+    std::vector<unsigned int>                 n_changes_;
+    std::vector<std::vector<char>>            visited_;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,52 @@
+#ifndef nodus_contact_surface_weights_h
+#define nodus_contact_surface_weights_h
+
+#include <nodus/contact/surface.h>
+#include <nodus/parameters.h>
+
+#include <vector>
+
+namespace Nodus
+{
+  /// A quadrature point of the contact surface: weight and slave shape functions.
+  struct ContactPoint
+  {
+    double                    weight; ///< [area]
+    std::vector<unsigned int> slaves; ///< slave numbers of the face (one only when the weights are lumped)
+    std::vector<double>       shape;  ///< phi of the same nodes
+    unsigned int              owner;  ///< rank that assembles it
+  };
+
+  /// Quadrature of the slave surfaces: M_ij = sum over points of weight phi_i phi_j, m_j = sum of weight phi_j.
+  ///
+  /// `nodal quadrature` (trapezoid, Simpson) and `dual` (biorthogonal multipliers, m_j = int phi_j) have one point a
+  /// node, so that every product of filtered fields is nodal; `consistent` has Gauss points.
+  class SurfaceWeights
+  {
+  public:
+    /// @p x current and @p X reference positions of the surface nodes; each pair takes its own measure.
+    void compute(const std::vector<ContactPairParameters> &pairs,
+                 const ContactSurfaces                    &surfaces,
+                 const std::vector<Point>                 &x,
+                 const std::vector<Point>                 &X);
+
+    const std::vector<ContactPoint> &points() const
+    {
+      return points_;
+    }
+    /// Nodal areas m_j > 0.
+    const std::vector<double> &area() const
+    {
+      return area_;
+    }
+
+    /// (M f)_j / m_j for a nodal field: the weighted nodal value that statuses are tested with.
+    std::vector<double> weighted(const std::vector<double> &nodal_field) const;
+
+  private:
+    std::vector<ContactPoint> points_;
+    std::vector<double>       area_;
+  };
+} // namespace Nodus
+
+#endif

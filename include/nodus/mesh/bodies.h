@@ -1,0 +1,69 @@
+#ifndef nodus_mesh_bodies_h
+#define nodus_mesh_bodies_h
+
+#include <nodus/parameters.h>
+#include <nodus/types.h>
+
+#include <deal.II/base/bounding_box.h>
+#include <deal.II/distributed/tria.h>
+
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace Nodus
+{
+  /// All bodies as disconnected parts of one distributed triangulation.
+  ///
+  /// A cell's material id is the (zero-based) index of its body; boundary ids are those of the mesh
+  /// file or of the generator, so that (body, boundary id) names a piece of boundary.
+  class Bodies
+  {
+  public:
+    /// Reads or generates every body, transforms it and concatenates the coarse meshes without gluing.
+    /// @throws InputError: missing or second-order file, no hexahedra, inverted cells, unknown volume id or generator.
+    Bodies(const std::vector<BodyParameters> &parameters, MPI_Comm communicator);
+
+    using Triangulation = dealii::parallel::distributed::Triangulation<dim>;
+
+    const Triangulation &triangulation() const
+    {
+      return triangulation_;
+    }
+    unsigned int size() const
+    {
+      return names_.size();
+    }
+    /// Name of body @p index (zero-based), as given or "body <number>".
+    const std::string &name(const unsigned int index) const
+    {
+      return names_[index];
+    }
+    /// Boundary ids present on body @p index, the same set on every rank.
+    const std::set<dealii::types::boundary_id> &boundary_ids(const unsigned int index) const
+    {
+      return boundary_ids_[index];
+    }
+    /// Axis-aligned box of body @p index in the reference configuration.
+    const dealii::BoundingBox<dim> &bounding_box(const unsigned int index) const
+    {
+      return boxes_[index];
+    }
+
+  private:
+    /// Generated bodies before their transformation. Some manifolds look points up in the mesh they were made for,
+    /// so these outlive the triangulation that uses the manifolds.
+    std::vector<std::unique_ptr<dealii::Triangulation<dim>>> generated_;
+    Triangulation                                            triangulation_;
+    std::vector<std::string>                                 names_;
+    std::vector<std::set<dealii::types::boundary_id>>        boundary_ids_;
+    std::vector<dealii::BoundingBox<dim>>                    boxes_;
+
+    void create(const std::vector<BodyParameters> &parameters);
+    void refine(const std::vector<BodyParameters> &parameters);
+    void collect_extents();
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,60 @@
+#ifndef nodus_mesh_region_h
+#define nodus_mesh_region_h
+
+#include <nodus/mesh/bodies.h>
+#include <nodus/parameters.h>
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <memory>
+
+namespace dealii
+{
+  template <int>
+  class FunctionParser;
+}
+
+namespace Nodus
+{
+  /// A part of the boundary of one or all bodies: faces by boundary id, thinned by a predicate of the
+  /// reference coordinates (evaluated at the nodes for nodal conditions, at face centres for the others).
+  class Region
+  {
+  public:
+    /// @p context names the subsection in messages, e.g. "Contact pair 1, slave".
+    /// @throws InputError on an unknown body, an id no face of the body has, or a predicate that does not parse.
+    Region(const RegionParameters &parameters, const Bodies &bodies, const std::string &context);
+    ~Region();
+    Region(Region &&) noexcept;
+
+    /// True when @p face of @p cell is at the boundary, of the region's body and has one of its ids.
+    template <typename Cell>
+    bool contains_face(const Cell &cell, const unsigned int face) const
+    {
+      if (!cell->face(face)->at_boundary() || (body_ != 0 && cell->material_id() + 1 != body_))
+        return false;
+      const auto id = cell->face(face)->boundary_id();
+      for (const auto i : ids_)
+        if (i == id)
+          return true;
+      return false;
+    }
+
+    /// True when the body of the cell belongs to the region (body forces).
+    template <typename Cell>
+    bool contains_cell(const Cell &cell) const
+    {
+      return body_ == 0 || cell->material_id() + 1 == body_;
+    }
+
+    /// The predicate at a reference point; true where there is none.
+    bool contains_point(const Point &X) const;
+
+  private:
+    unsigned int                                 body_;
+    std::vector<dealii::types::boundary_id>      ids_;
+    std::unique_ptr<dealii::FunctionParser<dim>> predicate_;
+  };
+} // namespace Nodus
+
+#endif

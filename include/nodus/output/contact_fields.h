@@ -1,0 +1,51 @@
+#ifndef nodus_output_contact_fields_h
+#define nodus_output_contact_fields_h
+
+#include <nodus/types.h>
+
+#include <vector>
+
+namespace Nodus
+{
+  /// What users see of one contact pair, converged state; nodal arrays are the same on every rank.
+  struct ContactFields
+  {
+    std::string name; ///< of the pair
+
+    /// Slave surface: one entry per slave node of the pair.
+    std::vector<Point>         X;                ///< reference position
+    std::vector<Vector3>       displacement;     ///<
+    std::vector<double>        pressure;         ///< CPRESS = -lambda_bar >= 0 in compression [pressure]
+    std::vector<double>        gap;              ///< COPEN = -d_n [length]
+    std::vector<Vector3>       friction;         ///< friction traction on the slave, global axes [pressure]
+    std::vector<double>        shear[2];         ///< CSHEAR1, CSHEAR2: friction in the tangent frame [pressure]
+    std::vector<double>        slip[2];          ///< CSLIP1, CSLIP2: accumulated slip while in contact [length]
+    std::vector<ContactStatus> status;           ///< CSTATUS: 0 open, 1 slip, 2 stick
+    std::vector<Vector3>       normal, tangent1; ///< unit, from slave to master
+    std::vector<double>        area;             ///< m_j [area]
+    std::vector<char>          paired;           ///< 0: no master found
+
+    /// Slave faces: (degree+1)^2 indices into the arrays above, lexicographic (first local coordinate fastest);
+    /// replicated, face f is written by rank face_owner[f].
+    unsigned int                           degree;
+    std::vector<std::vector<unsigned int>> faces;
+    std::vector<unsigned int>              face_owner;
+  };
+
+  /// Resultants and counts of one pair, for contact.csv; moments about the origin, current configuration.
+  struct ContactResultants
+  {
+    std::string  name;
+    Vector3      slave_force, slave_moment, master_force, master_moment;
+    double       contact_area = 0., maximum_pressure = 0.;
+    unsigned int open = 0, slip = 0, stick = 0, unpaired = 0;
+  };
+
+  /// Iterations spent on one increment.
+  struct IterationCounts
+  {
+    unsigned int geometry = 0, threshold = 0, status = 0, newton = 0, krylov = 0;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,41 @@
+#ifndef nodus_output_vtu_h
+#define nodus_output_vtu_h
+
+#include <nodus/bulk/material.h>
+#include <nodus/mesh/bodies.h>
+#include <nodus/output/contact_fields.h>
+#include <nodus/types.h>
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/mapping.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace Nodus
+{
+  /// Writes the bodies (bodies.pvd, bodies_0001.pvtu, ...) and the slave contact surfaces (contact.pvd, ...) of each
+  /// written increment on the deformed configuration. Files appear complete or not at all (temporary name, then
+  /// rename).
+  class VtuOutput
+  {
+  public:
+    VtuOutput(const std::string                            &folder,
+              const Bodies                                 &bodies,
+              const dealii::DoFHandler<dim>                &dof_handler,
+              const dealii::Mapping<dim>                   &mapping,
+              const std::vector<std::unique_ptr<Material>> &materials);
+    ~VtuOutput();
+
+    /// @p u has ghost entries. Collective. @throws InputError when the folder cannot be written.
+    void write(unsigned int increment, double t, const Vector &u, const std::vector<ContactFields> &contact);
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,192 @@
+#ifndef nodus_parameters_h
+#define nodus_parameters_h
+
+#include <nodus/types.h>
+
+#include <string>
+#include <vector>
+
+namespace dealii
+{
+  class ParameterHandler;
+}
+
+namespace Nodus
+{
+  class ParameterFile;
+
+  /// Every struct below is one subsection of the .prm file; the text of a key is the name of the
+  /// member with blanks, "Young's modulus" and the like excepted. Keys are bound to members in
+  /// source/parameters.cc and checked in source/parameters_check.cc; values here are the defaults
+  /// that `nodus --document` prints.
+
+  /// A part of the boundary: faces of one body (or of all) with the given boundary ids.
+  struct RegionParameters
+  {
+    unsigned int                            body = 0; ///< number of the body, 0 = every body
+    std::vector<dealii::types::boundary_id> boundary_ids;
+    std::string                             where; ///< muParser predicate of x, y, z; empty = everywhere
+  };
+
+  struct MaterialParameters
+  {
+    enum class Law
+    {
+      linear_elastic,
+      st_venant_kirchhoff,
+      neo_hookean,
+      mooney_rivlin
+    };
+    Law    law                 = Law::neo_hookean;
+    double youngs_modulus      = 1.;  ///< initial E [pressure]
+    double poissons_ratio      = 0.3; ///< initial nu [-], in (-1, 1/2)
+    double mooney_rivlin_ratio = 0.;  ///< c01/c10 >= 0 (Mooney-Rivlin only)
+  };
+
+  struct BodyParameters
+  {
+    std::string               name;
+    std::string               mesh_file;           ///< resolved against the folder of the .prm file
+    std::vector<unsigned int> volume_ids;          ///< physical volumes taken from the file; empty = all
+    std::string               generator;           ///< deal.II GridGenerator function, when no mesh file
+    std::string               generator_arguments; ///< separated by ':', as deal.II prints them
+    double                    scale = 1.;
+    Vector3                   rotation_axis; ///< with rotation_angle in degrees; about the origin
+    double                    rotation_angle = 0.;
+    Vector3                   translation; ///< applied after scale and rotation [length]
+    unsigned int              global_refinement = 0;
+    MaterialParameters        material;
+  };
+
+  struct BoundaryConditionParameters
+  {
+    enum class Type
+    {
+      displacement,
+      traction,   ///< dead, per reference area
+      pressure,   ///< follower, per current area, positive pushes on the body
+      body_force, ///< dead, per reference volume; the region's body only
+      spring      ///< to ground, stiffness per reference area
+    };
+    std::string               name;
+    Type                      type = Type::displacement;
+    RegionParameters          region;
+    std::vector<unsigned int> components; ///< 0, 1, 2; not used by pressure
+    std::vector<std::string>  value;      ///< muParser expressions of x, y, z, t: one per component, one for pressure
+  };
+
+  struct ContactPairParameters
+  {
+    enum class SurfaceMeasure
+    {
+      current,
+      reference
+    };
+    enum class Weights
+    {
+      nodal_quadrature,
+      dual,
+      consistent
+    };
+    enum class Normal
+    {
+      master_facet,
+      averaged
+    };
+    enum class InitialStatus
+    {
+      by_gap,
+      closed,
+      open
+    };
+    enum class StatusTest
+    {
+      weighted,
+      raw
+    };
+    std::string      name;
+    RegionParameters slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
+    RegionParameters master; ///< keys "Master body", ...
+    double           friction_coefficient           = 0.;
+    double           normal_augmentation_factor     = 1.; ///< times E/h gives rho_n
+    double           tangential_augmentation_factor = 1.; ///< times rho_n/|mu lambda_s| gives rho_tau
+    SurfaceMeasure   surface_measure                = SurfaceMeasure::current;
+    Weights          weights                        = Weights::nodal_quadrature;
+    Normal           normal                         = Normal::master_facet;
+    double           search_distance                = 0.;   ///< [length]; 0 = automatic
+    double           projection_tolerance           = 0.05; ///< overhang accepted, in face sizes
+    InitialStatus    initial_status                 = InitialStatus::by_gap;
+    StatusTest       status_test                    = StatusTest::weighted;
+  };
+
+  struct LoopParameters
+  {
+    unsigned int maximum_passes = 10;
+    double       tolerance      = 0.; ///< relative; the status loop has none: no status may change
+  };
+
+  struct NewtonParameters
+  {
+    unsigned int maximum_iterations = 25;
+    double       force_tolerance    = 1e-8; ///< relative to the largest nodal force
+    double contact_tolerance = 1e-8; ///< gap and slip relative to the displacement of the step; friction law absolute
+    bool   line_search       = false;
+  };
+
+  struct LinearSolverParameters
+  {
+    enum class Type
+    {
+      direct,
+      block
+    };
+    Type         type                = Type::direct;
+    double       tolerance           = 1e-10; ///< block: relative residual
+    unsigned int maximum_iterations  = 500;   ///< block: FGMRES iterations
+    double       augmentation_factor = 10.;   ///< block: gamma, in units of the diagonal of the stiffness
+  };
+
+  struct LoadSteppingParameters
+  {
+    std::vector<double>       interval_ends = {1.}; ///< increasing times; the first interval starts at 0
+    std::vector<unsigned int> increments    = {1};  ///< per interval
+  };
+
+  struct OutputParameters
+  {
+    std::string  results_folder;   ///< empty = results/<name of the .prm file>, in the working folder
+    unsigned int vtu_interval = 1; ///< every so many increments; 0 = only the last one
+  };
+
+  struct Parameters
+  {
+    std::string                              file; ///< the .prm file, for messages
+    std::string                              title;
+    unsigned int                             degree = 1; ///< of the displacement, 1 or 2
+    std::vector<BodyParameters>              bodies;
+    std::vector<BoundaryConditionParameters> boundary_conditions;
+    std::vector<ContactPairParameters>       contact_pairs;
+    LoopParameters                           geometry_loop  = {15, 0.01};
+    LoopParameters                           threshold_loop = {30, 1e-4};
+    LoopParameters                           status_loop    = {30, 0.};
+    NewtonParameters                         newton;
+    LinearSolverParameters                   linear_solver;
+    LoadSteppingParameters                   load_stepping;
+    OutputParameters                         output;
+
+    /// Strict parse of @p file after applying @p overrides ("Section/Key=value"). Throws InputError.
+    static Parameters read(const std::string &file, const std::vector<std::string> &overrides = {});
+
+    /// The reference of all parameters in Markdown (`nodus --document`).
+    static std::string documentation();
+
+  private:
+    /// Binds every key to its member; the numbers of bodies, conditions and pairs are already set.
+    void add_parameters(dealii::ParameterHandler &prm);
+
+    /// Everything that can be seen without a mesh. @throws InputError
+    void check(const ParameterFile &file) const;
+  };
+} // namespace Nodus
+
+#endif

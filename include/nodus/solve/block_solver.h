@@ -1,0 +1,22 @@
+#ifndef nodus_solve_block_solver_h
+#define nodus_solve_block_solver_h
+
+#include <nodus/solve/linear_solver.h>
+
+namespace Nodus
+{
+  /// Flexible GMRES on the whole system with the augmented block preconditioner of block_preconditioner.h.
+  class BlockSolver : public LinearSolver
+  {
+  public:
+    BlockSolver(const LinearSolverParameters &parameters, const RigidBodyData &rigid_body_data);
+
+    Report solve(const LinearSystem &system, BlockVector &solution) override;
+
+  private:
+    const LinearSolverParameters parameters_;
+    const RigidBodyData          rigid_body_data_;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,47 @@
+#ifndef nodus_solve_linear_solver_h
+#define nodus_solve_linear_solver_h
+
+#include <nodus/parameters.h>
+#include <nodus/solve/linear_system.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Nodus
+{
+  /// Solves the symmetric saddle-point systems of the contact Newton. Knows no physics.
+  class LinearSolver
+  {
+  public:
+    struct Report
+    {
+      unsigned int iterations        = 0;  ///< Krylov iterations; 0 for direct
+      double       relative_residual = 0.; ///< of the true system, 2-norm
+      /// direct only: negative pivots (a stable system has one for each multiplier) and the flat indices of null pivots
+      long                  negative_pivots = -1;
+      std::vector<DoFIndex> null_pivots;
+    };
+
+    virtual ~LinearSolver() = default;
+
+    /// @p solution is reinitialised to the layout of the right-hand side. The result is the same on every rank count
+    /// to the tolerance. @throws SolverFailure on every rank when the system cannot be solved; a singular system is
+    /// solved with null pivots reported (direct), the caller decides.
+    virtual Report solve(const LinearSystem &system, BlockVector &solution) = 0;
+  };
+
+  /// Coordinates of the degrees of freedom for the rigid-body modes, and the constrained ones (zero in the modes).
+  struct RigidBodyData
+  {
+    std::vector<Point> support_points; ///< of the owned displacement dofs, in ascending order of the dof
+    std::vector<char>  component;      ///< 0, 1, 2 of the same dofs
+    std::vector<char>  body;           ///< index of the body of the same dofs
+  };
+
+  std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverParameters &parameters,
+                                                   const BlockLayout            &layout,
+                                                   const RigidBodyData          &rigid_body_data);
+} // namespace Nodus
+
+#endif

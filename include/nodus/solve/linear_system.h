@@ -1,0 +1,84 @@
+#ifndef nodus_solve_linear_system_h
+#define nodus_solve_linear_system_h
+
+#include <nodus/types.h>
+
+#include <deal.II/base/index_set.h>
+#include <deal.II/lac/trilinos_parallel_block_vector.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <array>
+#include <vector>
+
+namespace Nodus
+{
+  /// Numbering of the unknowns (u, lambda, Lambda): three blocks of one block vector, and a flat index
+  /// u | lambda | Lambda in which the contact couplings are written.
+  ///
+  /// Slave node k carries lambda_k and the two tangential components Lambda_2k, Lambda_2k+1; all three are owned by
+  /// the rank that owns the node's displacement, and slave nodes are numbered so that each rank's are contiguous.
+  struct BlockLayout
+  {
+    MPI_Comm                        communicator;
+    std::array<dealii::IndexSet, 3> owned; ///< of u, lambda, Lambda
+    DoFIndex                        n_u;
+    DoFIndex                        n_slave_nodes;
+
+    DoFIndex lambda(const DoFIndex k) const
+    {
+      return n_u + k;
+    }
+    DoFIndex Lambda(const DoFIndex k, const unsigned int direction) const
+    {
+      return n_u + n_slave_nodes + 2 * k + direction;
+    }
+    DoFIndex size() const
+    {
+      return n_u + 3 * n_slave_nodes;
+    }
+    /// Sets @p v to zero with this layout, fully distributed.
+    void reinit(BlockVector &v) const;
+  };
+
+  /// Contact couplings of this rank as (row, column, value) in flat indices; both triangles are stored, equal
+  /// positions add up, also across ranks. Rows and columns of constrained displacements do not occur.
+  struct TripletMatrix
+  {
+    std::vector<DoFIndex> row, column;
+    std::vector<double>   value;
+
+    void clear()
+    {
+      row.clear();
+      column.clear();
+      value.clear();
+    }
+    void add(const DoFIndex i, const DoFIndex j, const double v)
+    {
+      row.push_back(i);
+      column.push_back(j);
+      value.push_back(v);
+    }
+  };
+
+  /// One Newton correction: (bulk + contact) delta = rhs, symmetric indefinite.
+  ///
+  ///     [ bulk + C_uu   B^T ] [du]   [ rhs_u ]
+  ///     [ B             -C  ] [dm] = [ rhs_m ],   m = (lambda, Lambda), C >= 0 and coupled only
+  ///                                               within a slave node unless the weights are `consistent`
+  ///
+  /// bulk has its constraints applied: constrained rows hold a positive diagonal only and no contact coupling.
+  struct LinearSystem
+  {
+    const BlockLayout *layout;
+    SparseMatrix       bulk;
+    TripletMatrix      contact;
+    BlockVector        rhs;
+    /// Per owned slave node, per multiplier: scale s > 0 for symmetric row and column equilibration
+    /// (multiplier = s x scaled multiplier); friction rows carry mu lambda_s and get its inverse. Size 3 x owned slave
+    /// nodes: lambda, Lambda_1, Lambda_2 of the first owned node, and so on.
+    std::vector<double> multiplier_scale;
+  };
+} // namespace Nodus
+
+#endif

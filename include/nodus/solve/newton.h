@@ -1,0 +1,56 @@
+#ifndef nodus_solve_newton_h
+#define nodus_solve_newton_h
+
+#include <nodus/parameters.h>
+#include <nodus/types.h>
+
+#include <functional>
+
+namespace Nodus
+{
+  /// What Newton needs of a nonlinear problem: it sees no physics.
+  class NewtonProblem
+  {
+  public:
+    /// Relative violations at the current iterate, all to be small.
+    struct Norms
+    {
+      double force      = 0.; ///< nodal equilibrium
+      double contact    = 0.; ///< contact and friction laws
+      double prescribed = 0.; ///< prescribed displacements still to be met
+    };
+
+    virtual ~NewtonProblem() = default;
+    /// Residual and tangent at the current iterate. @throws SolverFailure where they do not exist.
+    virtual Norms assemble() = 0;
+    /// The correction; returns the Krylov iterations.
+    virtual unsigned int solve(BlockVector &correction) = 0;
+    /// iterate += factor * correction.
+    virtual void advance(double factor, const BlockVector &correction) = 0;
+  };
+
+  class Newton
+  {
+  public:
+    explicit Newton(const NewtonParameters &parameters);
+
+    struct Report
+    {
+      unsigned int iterations = 0, krylov_iterations = 0;
+    };
+    /// Called after each assembly: iteration, norms, Krylov iterations of the correction that led here.
+    using Log = std::function<void(unsigned int, const NewtonProblem::Norms &, unsigned int)>;
+
+    /// Solves from the current iterate; no correction when it already satisfies the tolerances.
+    /// A step into states that do not exist (det F <= 0) is halved, at most five times; with line search, so is one
+    /// that increases the force residual. @throws SolverFailure with the last norms.
+    Report solve(NewtonProblem &problem, const Log &log) const;
+
+  private:
+    bool converged(const NewtonProblem::Norms &norms) const;
+
+    NewtonParameters parameters_;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,116 @@
+#ifndef nodus_solve_saddle_point_operator_h
+#define nodus_solve_saddle_point_operator_h
+
+#include <nodus/solve/linear_system.h>
+
+#include <Epetra_CrsMatrix.h>
+
+#include <memory>
+#include <vector>
+
+namespace Nodus
+{
+  /// An entry of a distributed matrix, on its way to the rank that owns the row.
+  struct MatrixEntry
+  {
+    DoFIndex row, column;
+    double   value;
+
+    template <typename Archive>
+    void serialize(Archive &archive, const unsigned int)
+    {
+      archive &row &column &value;
+    }
+  };
+
+  /// Contiguous index ranges of the ranks, known to every rank.
+  class Ownership
+  {
+  public:
+    Ownership(const dealii::IndexSet &owned, MPI_Comm communicator);
+
+    unsigned int owner(DoFIndex i) const;
+
+    /// The owned indices number @p factor times as many when each one is replaced by that many consecutive ones.
+    Ownership times(unsigned int factor) const;
+
+    dealii::IndexSet owned() const;
+
+    /// Adds up the entries of all ranks and keeps the rows owned here, sorted by row and column. Collective.
+    std::vector<MatrixEntry> exchange(std::vector<MatrixEntry> entries) const;
+
+  private:
+    std::vector<DoFIndex> start_; ///< of each rank, and the size
+    MPI_Comm              communicator_;
+  };
+
+  /// A LinearSystem as an operator on vectors (u, m) with two blocks: the three multipliers of a slave node follow each
+  /// other in m, and they are scaled so that a unit of every multiplier acts on u like a unit of displacement does
+  /// through the diagonal of the stiffness. All rows are then forces, and a residual norm hides none of them.
+  ///
+  ///     [ bulk + C_uu   B^T ]
+  ///     [ B             -C  ]
+  ///
+  /// The result does not depend on LinearSystem::multiplier_scale, which the scaling supersedes.
+  class SaddlePointOperator
+  {
+  public:
+    /// Keeps a reference to @p system. Collective.
+    explicit SaddlePointOperator(const LinearSystem &system);
+
+    void vmult(BlockVector &dst, const BlockVector &src) const;
+
+    /// The right-hand side, scaled.
+    BlockVector rhs() const;
+
+    /// Writes @p x in the unknowns of the system.
+    void to_solution(const BlockVector &x, BlockVector &solution) const;
+
+    /// 2-norm of a residual in the units of the system.
+    double unscaled_norm(const BlockVector &residual) const;
+
+    const Epetra_CrsMatrix &bulk() const
+    {
+      return system_.bulk.trilinos_matrix();
+    }
+    const Epetra_CrsMatrix &B() const
+    {
+      return *B_;
+    }
+    const Epetra_CrsMatrix &C() const
+    {
+      return *C_;
+    }
+    /// Coupling of displacements, owned rows, sorted.
+    const std::vector<MatrixEntry> &displacement_entries() const
+    {
+      return uu_entries_;
+    }
+    const Ownership &displacement_ownership() const
+    {
+      return u_ownership_;
+    }
+    /// Stiffness that each owned multiplier sees, |B_i|^2 / (B diag(K)^-1 B^T)_ii; 0 for multipliers without coupling.
+    const std::vector<double> &stiffness() const
+    {
+      return stiffness_;
+    }
+
+  private:
+    void equilibrate();
+
+    const LinearSystem               &system_;
+    const Ownership                   u_ownership_, m_ownership_;
+    const dealii::IndexSet            owned_m_;
+    std::vector<MatrixEntry>          uu_entries_;
+    std::unique_ptr<Epetra_CrsMatrix> B_, C_, C_uu_; ///< C_uu is null when it has no entries
+    std::vector<double>               scale_;        ///< of owned multipliers: multiplier = scale x unknown
+    std::vector<double>               stiffness_;
+  };
+
+  /// Matrix of the sorted @p entries of owned rows, with the given row and column maps. Collective.
+  std::unique_ptr<Epetra_CrsMatrix>
+  make_matrix(const std::vector<MatrixEntry> &entries, const Epetra_Map &range, const Epetra_Map &domain);
+} // namespace Nodus
+
+#endif

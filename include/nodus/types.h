@@ -1,0 +1,62 @@
+#ifndef nodus_types_h
+#define nodus_types_h
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+#include <deal.II/base/types.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace dealii
+{
+  namespace TrilinosWrappers
+  {
+    class SparseMatrix;
+    namespace MPI
+    {
+      class Vector;
+      class BlockVector;
+    } // namespace MPI
+  }   // namespace TrilinosWrappers
+} // namespace dealii
+
+/// Frictional contact of 3D finite-strain bodies.
+///
+/// Signs, everywhere: n points from slave to master, jumps are slave minus master, d_n > 0 is
+/// penetration, the contact pressure multiplier lambda is <= 0 in compression.
+namespace Nodus
+{
+  constexpr unsigned int dim = 3;
+
+  using Vector       = dealii::TrilinosWrappers::MPI::Vector;
+  using BlockVector  = dealii::TrilinosWrappers::MPI::BlockVector;
+  using SparseMatrix = dealii::TrilinosWrappers::SparseMatrix;
+  using DoFIndex     = dealii::types::global_dof_index;
+  using Point        = dealii::Point<dim>;
+  using Vector3      = dealii::Tensor<1, dim>;
+
+  /// Status of a slave node; stick and slip are both "contact" (S = 1).
+  enum class ContactStatus : unsigned char
+  {
+    open,
+    slip,
+    stick
+  };
+
+  /// Something in the input is wrong: the message names file, key and fix. Exit code 1.
+  class InputError : public std::runtime_error
+  {
+  public:
+    using std::runtime_error::runtime_error;
+  };
+
+  /// A Newton, a loop or a linear solver did not succeed. Thrown on every rank alike.
+  class SolverFailure : public std::runtime_error
+  {
+  public:
+    using std::runtime_error::runtime_error;
+  };
+} // namespace Nodus
+
+#endif

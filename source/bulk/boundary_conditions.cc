@@ -1,0 +1,329 @@
+#include <nodus/bulk/boundary_conditions.h>
+#include <nodus/bulk/throw_everywhere.h>
+
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe.h>
+#include <deal.II/lac/trilinos_vector.h>
+
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <sstream>
+
+namespace Nodus
+{
+  using namespace dealii;
+
+  struct BoundaryConditions::Held
+  {
+    Point        X;
+    unsigned int condition;
+    unsigned int entry;
+  };
+
+  namespace
+  {
+    using Type         = BoundaryConditionParameters::Type;
+    using CellIterator = DoFHandler<dim>::active_cell_iterator;
+
+    /// deal.II writes what muParser says to std::cerr on each rank before it throws the same text.
+    struct SilentErrors
+    {
+      std::ostringstream    sink;
+      std::streambuf *const before = std::cerr.rdbuf(sink.rdbuf());
+
+      ~SilentErrors()
+      {
+        std::cerr.rdbuf(before);
+      }
+    };
+
+    std::string reason(const ExceptionBase &error)
+    {
+      std::ostringstream text;
+      error.print_info(text);
+      const std::string words = text.str();
+      const auto        begin = words.find_first_not_of(" \n");
+      return begin == std::string::npos ? "" : words.substr(begin, words.find_last_not_of(" \n") + 1 - begin);
+    }
+
+    std::unique_ptr<FunctionParser<dim>> parse(const BoundaryConditionParameters &parameters, const std::string &label)
+    {
+      const std::size_t expected = parameters.type == Type::pressure ? 1 : parameters.components.size();
+      if (parameters.value.size() != expected || expected == 0)
+        throw InputError(label + ": " + std::to_string(parameters.value.size()) + " expressions in 'Value' for " +
+                         (parameters.type == Type::pressure
+                              ? "a pressure, which takes exactly one"
+                              : std::to_string(expected) + " 'Components'; write one expression for each component"));
+
+      const std::map<std::string, double> constants = {{"pi", numbers::PI}};
+      const SilentErrors                  silent;
+      for (const auto &expression : parameters.value)
+        try
+        {
+          // muParser reads an expression when it is first evaluated
+          FunctionParser<dim> probe(1);
+          probe.initialize("x,y,z,t", expression, constants, true);
+          probe.value(Point());
+        }
+        catch (const ExceptionBase &error)
+        {
+          throw InputError(label + ": 'Value' = '" + expression + "' cannot be evaluated (" + reason(error) +
+                           "); write an expression of x, y, z, t");
+        }
+      auto function = std::make_unique<FunctionParser<dim>>(expected);
+      function->initialize("x,y,z,t", parameters.value, constants, true);
+      return function;
+    }
+
+    std::string describe(const RegionParameters &region)
+    {
+      std::string text = region.body == 0 ? "any body" : "body " + std::to_string(region.body);
+      if (!region.boundary_ids.empty())
+      {
+        text += ", boundary ids ";
+        for (unsigned int i = 0; i < region.boundary_ids.size(); ++i)
+          text += (i > 0 ? ", " : "") + std::to_string(region.boundary_ids[i]);
+      }
+      return text;
+    }
+
+    /// Throws, everywhere, for the first condition of which no rank found a @p what.
+    void check_found(const std::vector<unsigned int>                &found,
+                     const std::vector<BoundaryConditionParameters> &parameters,
+                     const unsigned int                              condition,
+                     const std::string                              &label,
+                     const std::string                              &what)
+    {
+      if (found[condition] > 0)
+        return;
+      const auto &region = parameters[condition].region;
+      throw InputError(label + ": no " + what + " of " + describe(region) +
+                       (region.where.empty() ? " belongs to it" : " satisfies '" + region.where + "'") + "; check " +
+                       (parameters[condition].type == Type::body_force ? "'Body'" : "'Boundary ids'") + " and 'Where'");
+    }
+
+    /// Values of one expression at the start, the middle and the end of the load path.
+    std::array<double, 3>
+    history(FunctionParser<dim> &function, const Point &X, const unsigned int entry, const double end_time)
+    {
+      std::array<double, 3> values;
+      for (unsigned int s = 0; s < 3; ++s)
+      {
+        function.set_time(s * end_time / 2.);
+        values[s] = function.value(X, entry);
+      }
+      return values;
+    }
+
+    bool agree(const std::array<double, 3> &a, const std::array<double, 3> &b)
+    {
+      double scale = 0., difference = 0.;
+      for (unsigned int s = 0; s < 3; ++s)
+      {
+        scale      = std::max({scale, std::abs(a[s]), std::abs(b[s])});
+        difference = std::max(difference, std::abs(a[s] - b[s]));
+      }
+      return difference <= 1e-8 * scale;
+    }
+
+    std::string at(const Point &X, const unsigned int component)
+    {
+      std::ostringstream text;
+      text << "the "
+           << "xyz"[component] << " displacement of the node at (" << X << ")";
+      return text.str();
+    }
+  } // namespace
+
+  BoundaryConditions::BoundaryConditions(const std::vector<BoundaryConditionParameters> &parameters,
+                                         const Bodies                                   &bodies,
+                                         const DoFHandler<dim>                          &dof_handler,
+                                         const Mapping<dim>                             &mapping,
+                                         const double                                    end_time)
+      : parameters_(parameters)
+  {
+    for (unsigned int n = 0; n < parameters_.size(); ++n)
+      functions_.push_back(parse(parameters_[n], label(n)));
+    add_loads(bodies, dof_handler);
+    collect_prescribed(find_held(bodies, dof_handler, mapping, end_time), dof_handler, mapping);
+    make_constraints(dof_handler);
+    set_time(0.);
+  }
+
+  std::string BoundaryConditions::label(const unsigned int condition) const
+  {
+    const std::string &name = parameters_[condition].name;
+    return "Boundary condition " + std::to_string(condition + 1) + (name.empty() ? "" : " ('" + name + "')");
+  }
+
+  void BoundaryConditions::add_loads(const Bodies &bodies, const DoFHandler<dim> &dof_handler)
+  {
+    std::vector<unsigned int> found(parameters_.size(), 0);
+    for (unsigned int n = 0; n < parameters_.size(); ++n)
+      if (parameters_[n].type != Type::displacement)
+      {
+        const bool       on_cells = parameters_[n].type == Type::body_force;
+        RegionParameters where    = parameters_[n].region;
+        if (on_cells)
+          where.boundary_ids.clear();
+        Load load{&parameters_[n], Region(where, bodies, label(n)), functions_[n].get()};
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          if (cell->is_locally_owned() && load.region.contains_cell(cell))
+          {
+            if (on_cells)
+              found[n] += load.region.contains_point(cell->center());
+            else
+              for (const auto face : cell->face_indices())
+                found[n] +=
+                    load.region.contains_face(cell, face) && load.region.contains_point(cell->face(face)->center());
+          }
+        loads_.push_back(std::move(load));
+      }
+    Utilities::MPI::max(found, dof_handler.get_communicator(), found);
+    for (const auto &load : loads_)
+    {
+      const unsigned int n = load.parameters - parameters_.data();
+      check_found(found, parameters_, n, label(n), parameters_[n].type == Type::body_force ? "cell" : "face");
+    }
+  }
+
+  /// Owned degrees of freedom only: all cells around them are known here, so no face of a region is missed.
+  std::map<DoFIndex, BoundaryConditions::Held> BoundaryConditions::find_held(const Bodies          &bodies,
+                                                                             const DoFHandler<dim> &dof_handler,
+                                                                             const Mapping<dim>    &mapping,
+                                                                             const double           end_time)
+  {
+    const auto               &fe        = dof_handler.get_fe();
+    const auto               &scalar_fe = fe.base_element(0);
+    const IndexSet           &owned     = dof_handler.locally_owned_dofs();
+    std::map<DoFIndex, Held>  held;
+    std::vector<unsigned int> found(parameters_.size(), 0);
+    std::vector<DoFIndex>     dofs(fe.n_dofs_per_cell());
+    std::string               error;
+
+    const auto hold = [&](const DoFIndex dof, const Point &X, const unsigned int n, const unsigned int e)
+    {
+      const auto  new_one = held.insert({dof, {X, n, e}});
+      const Held &first   = new_one.first->second;
+      if (!new_one.second && first.condition == n && first.entry == e)
+        return;
+      const auto values   = history(*functions_[n], X, e, end_time);
+      const auto position = at(X, parameters_[n].components[e]);
+      if (!std::isfinite(values[0] + values[1] + values[2]))
+        error = label(n) + ": '" + parameters_[n].value[e] + "' is not a number for " + position;
+      else if (!new_one.second && !agree(values, history(*functions_[first.condition], X, first.entry, end_time)))
+        error = label(first.condition) + " and " + label(n) + " prescribe different values for " + position + ": '" +
+                parameters_[first.condition].value[first.entry] + "' and '" + parameters_[n].value[e] +
+                "'; restrict one of them with 'Where' or 'Components'";
+    };
+
+    for (unsigned int n = 0; n < parameters_.size(); ++n)
+      if (parameters_[n].type == Type::displacement)
+      {
+        const Region region(parameters_[n].region, bodies, label(n));
+        reaction_regions_.push_back(
+            {parameters_[n].name.empty() ? "boundary condition " + std::to_string(n + 1) : parameters_[n].name, {}});
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          if (!cell->is_artificial())
+            for (const auto face : cell->face_indices())
+              if (region.contains_face(cell, face))
+              {
+                cell->get_dof_indices(dofs);
+                for (unsigned int a = 0; a < scalar_fe.n_dofs_per_cell(); ++a)
+                  if (scalar_fe.has_support_on_face(a, face))
+                  {
+                    const Point X = mapping.transform_unit_to_real_cell(cell, scalar_fe.unit_support_point(a));
+                    if (!region.contains_point(X))
+                      continue;
+                    ++found[n];
+                    for (unsigned int e = 0; e < parameters_[n].components.size(); ++e)
+                    {
+                      const auto component = parameters_[n].components[e];
+                      const auto dof       = dofs[fe.component_to_system_index(component, a)];
+                      if (owned.is_element(dof))
+                        hold(dof, X, n, e);
+                    }
+                  }
+              }
+        for (const auto &[dof, where] : held)
+          if (where.condition == n)
+            reaction_regions_.back().dofs[parameters_[n].components[where.entry]].push_back(dof);
+      }
+    throw_everywhere<InputError>(error, dof_handler.get_communicator());
+    Utilities::MPI::max(found, dof_handler.get_communicator(), found);
+    for (unsigned int n = 0; n < parameters_.size(); ++n)
+      if (parameters_[n].type == Type::displacement)
+        check_found(found, parameters_, n, label(n), "node");
+    return held;
+  }
+
+  /// Ghosts ask their owner: the face of a region may belong to a cell that this rank does not know.
+  void BoundaryConditions::collect_prescribed(const std::map<DoFIndex, Held> &held,
+                                              const DoFHandler<dim>          &dof_handler,
+                                              const Mapping<dim>             &mapping)
+  {
+    const IndexSet &owned    = dof_handler.locally_owned_dofs();
+    const IndexSet  relevant = DoFTools::extract_locally_relevant_dofs(dof_handler);
+    Vector          code_of_owned(owned, dof_handler.get_communicator());
+    Vector          code(owned, relevant, dof_handler.get_communicator());
+    for (const auto &[dof, where] : held)
+      code_of_owned(dof) = 1 + dim * where.condition + where.entry;
+    code_of_owned.compress(VectorOperation::insert);
+    code = code_of_owned;
+
+    const auto                    &fe = dof_handler.get_fe();
+    std::vector<DoFIndex>          dofs(fe.n_dofs_per_cell());
+    std::map<DoFIndex, Prescribed> all;
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (!cell->is_artificial())
+      {
+        cell->get_dof_indices(dofs);
+        for (unsigned int i = 0; i < dofs.size(); ++i)
+          if (code(dofs[i]) != 0. && all.count(dofs[i]) == 0)
+          {
+            const unsigned int found = static_cast<unsigned int>(code(dofs[i])) - 1;
+            const Point        X     = mapping.transform_unit_to_real_cell(
+                cell, fe.base_element(0).unit_support_point(fe.system_to_component_index(i).second));
+            all[dofs[i]] = {dofs[i], X, found / dim, found % dim, 0.};
+          }
+      }
+    for (const auto &[dof, one] : all)
+      prescribed_.push_back(one);
+  }
+
+  void BoundaryConditions::make_constraints(const DoFHandler<dim> &dof_handler)
+  {
+    lines_.reinit(DoFTools::extract_locally_relevant_dofs(dof_handler));
+    DoFTools::make_hanging_node_constraints(dof_handler, lines_);
+
+    // a hanging node of a region follows its masters, which belong to the region as well
+    std::vector<Prescribed> not_hanging;
+    for (const auto &one : prescribed_)
+      if (!lines_.is_constrained(one.dof))
+        not_hanging.push_back(one);
+    prescribed_ = not_hanging;
+    for (const auto &one : prescribed_)
+      lines_.add_line(one.dof);
+    homogeneous_.copy_from(lines_);
+    homogeneous_.close();
+  }
+
+  void BoundaryConditions::set_time(const double t)
+  {
+    for (auto &function : functions_)
+      function->set_time(t);
+    for (auto &one : prescribed_)
+      one.value = functions_[one.condition]->value(one.X, one.entry);
+  }
+
+  const AffineConstraints<double> &BoundaryConditions::increment_constraints(const Vector &u)
+  {
+    // from the unresolved lines: close() passes the inhomogeneities on to hanging nodes
+    increment_.copy_from(lines_);
+    for (const auto &one : prescribed_)
+      increment_.set_inhomogeneity(one.dof, one.value - u(one.dof));
+    increment_.close();
+    return increment_;
+  }
+} // namespace Nodus

@@ -1,0 +1,56 @@
+#include <nodus/bulk/linear_elastic.h>
+#include <nodus/bulk/material.h>
+#include <nodus/bulk/mooney_rivlin.h>
+#include <nodus/bulk/neo_hookean.h>
+#include <nodus/bulk/st_venant_kirchhoff.h>
+
+namespace Nodus
+{
+  using namespace dealii;
+
+  SymmetricTensor<2, dim> Material::cauchy_stress(const Tensor<2, dim> &F) const
+  {
+    SymmetricTensor<2, dim> S;
+    evaluate(F, S, nullptr);
+    if (small_strain())
+      return S;
+    return symmetrize(F * Tensor<2, dim>(S) * transpose(F)) / determinant(F);
+  }
+
+  SymmetricTensor<4, dim> Material::symmetric_square(const SymmetricTensor<2, dim> &A)
+  {
+    // rows and columns of the 6x6 storage
+    constexpr unsigned int  n        = SymmetricTensor<2, dim>::n_independent_components;
+    constexpr unsigned int  first[n] = {0, 1, 2, 0, 0, 1}, second[n] = {0, 1, 2, 1, 2, 2};
+    const Tensor<2, dim>    a = A;
+    SymmetricTensor<4, dim> result;
+    for (unsigned int r = 0; r < n; ++r)
+      for (unsigned int c = 0; c < n; ++c)
+      {
+        const unsigned int i = first[r], j = second[r], k = first[c], l = second[c];
+        result.access_raw_entry(n * r + c) = 0.5 * (a[i][k] * a[j][l] + a[i][l] * a[j][k]);
+      }
+    return result;
+  }
+
+  std::unique_ptr<Material> make_material(const MaterialParameters &parameters)
+  {
+    const double E = parameters.youngs_modulus, nu = parameters.poissons_ratio;
+    if (!(E > 0.) || !(nu > -1. && nu < 0.5) || !(parameters.mooney_rivlin_ratio >= 0.))
+      throw InputError("Material: Young's modulus " + std::to_string(E) + ", Poisson's ratio " + std::to_string(nu) +
+                       ", Mooney-Rivlin ratio " + std::to_string(parameters.mooney_rivlin_ratio) +
+                       "; needed are E > 0, -1 < nu < 0.5 and a ratio >= 0");
+    switch (parameters.law)
+    {
+      case MaterialParameters::Law::linear_elastic:
+        return std::make_unique<LinearElastic>(parameters);
+      case MaterialParameters::Law::st_venant_kirchhoff:
+        return std::make_unique<StVenantKirchhoff>(parameters);
+      case MaterialParameters::Law::neo_hookean:
+        return std::make_unique<NeoHookean>(parameters);
+      case MaterialParameters::Law::mooney_rivlin:
+        return std::make_unique<MooneyRivlin>(parameters);
+    }
+    throw InputError("Material: unknown law");
+  }
+} // namespace Nodus

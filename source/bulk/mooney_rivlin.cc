@@ -1,0 +1,50 @@
+#include <nodus/bulk/mooney_rivlin.h>
+
+#include <cmath>
+
+namespace Nodus
+{
+  using namespace dealii;
+
+  MooneyRivlin::MooneyRivlin(const MaterialParameters &parameters)
+      : E_(parameters.youngs_modulus)
+      , c10_(E_ / (4. * (1. + parameters.poissons_ratio) * (1. + parameters.mooney_rivlin_ratio)))
+      , c01_(parameters.mooney_rivlin_ratio * c10_)
+      , kappa_(E_ / (3. * (1. - 2. * parameters.poissons_ratio)))
+  {
+  }
+
+  void MooneyRivlin::evaluate(const Tensor<2, dim> &F, SymmetricTensor<2, dim> &S, SymmetricTensor<4, dim> *C) const
+  {
+    const auto   I         = unit_symmetric_tensor<dim>();
+    const auto   strain    = symmetrize(transpose(F) * F); // right Cauchy-Green
+    const auto   A         = invert(strain);
+    const double J         = determinant(F);
+    const double I1        = trace(strain);
+    const double I2        = (I1 * I1 - strain * strain) / 2.;
+    const auto   D         = I1 * I - strain; // dI2/d(strain)
+    const double J_23      = std::pow(J, -2. / 3.);
+    const double a         = 2. * c10_ * J_23;
+    const double b         = 2. * c01_ * J_23 * J_23;
+    const double on_A      = a * I1 / 3. + b * 2. / 3. * I2 - kappa_ * (J - 1.) * J; // minus the factor of A in S
+    const double isochoric = a * I1 / 9. + b * 4. / 9. * I2;
+
+    S = a * I + b * D - on_A * A;
+    if (C)
+    {
+      const auto T = a / 3. * I + b * 2. / 3. * D;
+      *C = 2. * (b * (outer_product(I, I) - identity_tensor<dim>()) - outer_product(T, A) - outer_product(A, T)) +
+           (2. * isochoric + kappa_ * (2. * J - 1.) * J) * outer_product(A, A) + 2. * on_A * symmetric_square(A);
+    }
+  }
+
+  double MooneyRivlin::energy(const Tensor<2, dim> &F) const
+  {
+    const auto   strain = symmetrize(transpose(F) * F);
+    const double J      = determinant(F);
+    const double I1     = trace(strain);
+    const double I2     = (I1 * I1 - strain * strain) / 2.;
+    const double J_23   = std::pow(J, -2. / 3.);
+    return c10_ * (J_23 * I1 - 3.) + c01_ * (J_23 * J_23 * I2 - 3.) + kappa_ / 2. * (J - 1.) * (J - 1.);
+  }
+} // namespace Nodus

@@ -1,0 +1,31 @@
+#include <nodus/bulk/neo_hookean.h>
+
+#include <cmath>
+
+namespace Nodus
+{
+  using namespace dealii;
+
+  NeoHookean::NeoHookean(const MaterialParameters &parameters)
+      : E_(parameters.youngs_modulus)
+      , lambda_(E_ * parameters.poissons_ratio /
+                ((1. + parameters.poissons_ratio) * (1. - 2. * parameters.poissons_ratio)))
+      , mu_(E_ / (2. * (1. + parameters.poissons_ratio)))
+  {
+  }
+
+  void NeoHookean::evaluate(const Tensor<2, dim> &F, SymmetricTensor<2, dim> &S, SymmetricTensor<4, dim> *C) const
+  {
+    const auto   A     = invert(symmetrize(transpose(F) * F));
+    const double log_J = std::log(determinant(F));
+    S                  = mu_ * unit_symmetric_tensor<dim>() + (lambda_ * log_J - mu_) * A;
+    if (C)
+      *C = lambda_ * outer_product(A, A) + 2. * (mu_ - lambda_ * log_J) * symmetric_square(A);
+  }
+
+  double NeoHookean::energy(const Tensor<2, dim> &F) const
+  {
+    const double log_J = std::log(determinant(F));
+    return mu_ / 2. * (F.norm_square() - 3.) - mu_ * log_J + lambda_ / 2. * log_J * log_J;
+  }
+} // namespace Nodus

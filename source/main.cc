@@ -1,0 +1,144 @@
+#include <nodus/contact_problem.h>
+#include <nodus/parameters.h>
+
+#include <deal.II/base/config.h>
+#include <deal.II/base/mpi.h>
+
+#include <Trilinos_version.h>
+#include <dmumps_c.h>
+
+#include <iostream>
+#include <string>
+#include <vector>
+
+// Command line and exit codes; the case itself is Parameters::read() and ContactProblem.
+
+namespace
+{
+  const char *const usage = R"(nodus: contact of 3D bodies at large deformation, with friction
+
+  nodus case.prm [--set "Section/Key=value"]... [--validate]
+
+  --set "Section/Key=value"  replaces a value of the file, e.g. --set "Contact pair 1/Friction coefficient=0.3"
+  --validate                 reads the case, pairs the surfaces, prints a summary and stops
+  --document                 prints the reference of all parameters (Markdown)
+  --version                  prints the versions of nodus and of its libraries
+  --help                     prints this text
+)";
+
+  struct CommandLine
+  {
+    std::string              file;
+    std::vector<std::string> overrides;
+    bool                     validate = false;
+    std::string              print; ///< --document, --version or --help
+  };
+
+  CommandLine parse(const std::vector<std::string> &arguments)
+  {
+    CommandLine command;
+    for (std::size_t i = 0; i < arguments.size(); ++i)
+    {
+      const std::string &argument = arguments[i];
+      if (argument == "--document" || argument == "--version" || argument == "--help")
+        command.print = argument;
+      else if (argument == "--validate")
+        command.validate = true;
+      else if (argument == "--set")
+      {
+        if (++i == arguments.size())
+          throw Nodus::InputError("--set needs \"Section/Key=value\" after it");
+        command.overrides.push_back(arguments[i]);
+      }
+      else if (argument.empty() || argument[0] == '-')
+        throw Nodus::InputError("unknown option '" + argument + "'; see nodus --help");
+      else if (!command.file.empty())
+        throw Nodus::InputError("two parameter files, '" + command.file + "' and '" + argument +
+                                "'; give one (values with blanks need quotes)");
+      else
+        command.file = argument;
+    }
+    if (command.file.empty() && command.print.empty())
+      throw Nodus::InputError("no parameter file; see nodus --help");
+    return command;
+  }
+
+  std::string versions()
+  {
+    std::string text = "nodus " NODUS_VERSION "\n";
+    text += "deal.II " DEAL_II_PACKAGE_VERSION "\n";
+    text += "Trilinos " TRILINOS_VERSION_STRING "\n";
+    text += "MUMPS " MUMPS_VERSION "\n";
+    text += "p4est " + std::to_string(DEAL_II_P4EST_VERSION_MAJOR) + '.' + std::to_string(DEAL_II_P4EST_VERSION_MINOR) +
+            '.' + std::to_string(DEAL_II_P4EST_VERSION_SUBMINOR) + '\n';
+    return text;
+  }
+
+  std::string answer(const std::string &option)
+  {
+    if (option == "--document")
+      return Nodus::Parameters::documentation();
+    return option == "--version" ? versions() : usage;
+  }
+
+  /// Errors after the file was read do not know its name.
+  void solve(const Nodus::Parameters &parameters, const bool validate)
+  {
+    try
+    {
+      Nodus::ContactProblem problem(parameters, MPI_COMM_WORLD);
+      if (validate)
+        problem.validate();
+      else
+        problem.run();
+    }
+    catch (const Nodus::InputError &error)
+    {
+      throw Nodus::InputError(parameters.file + ": " + error.what());
+    }
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  // One thread per rank: parallelism is MPI's, and sums do not depend on scheduling.
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const bool                               first_rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  try
+  {
+    const CommandLine command = parse(std::vector<std::string>(argv + 1, argv + argc));
+    if (!command.print.empty())
+    {
+      if (first_rank)
+        std::cout << answer(command.print) << std::flush;
+    }
+    else
+      solve(Nodus::Parameters::read(command.file, command.overrides), command.validate);
+    return 0;
+  }
+  // These two are thrown on all ranks alike, so that every rank comes to its orderly end.
+  catch (const Nodus::InputError &error)
+  {
+    if (first_rank)
+      std::cerr << "nodus: input error: " << error.what() << std::endl;
+    return 1;
+  }
+  catch (const Nodus::SolverFailure &error)
+  {
+    if (first_rank)
+      std::cerr << "nodus: no solution: " << error.what() << std::endl;
+    return 1;
+  }
+  // Anything else may have hit this rank only while the others wait for it.
+  catch (const std::exception &error)
+  {
+    std::cerr << "nodus: error: " << error.what() << std::endl;
+    MPI_Abort(MPI_COMM_WORLD, 1);
+  }
+  catch (...)
+  {
+    std::cerr << "nodus: error of an unknown kind" << std::endl;
+    MPI_Abort(MPI_COMM_WORLD, 1);
+  }
+  return 1;
+}

@@ -1,0 +1,130 @@
+#include <nodus/output/console.h>
+
+#include <cstdio>
+#include <ctime>
+#include <ostream>
+
+namespace Nodus
+{
+  namespace
+  {
+    /// Progress is reported this often, in seconds, on runs that last.
+    constexpr double progress_interval = 30.;
+
+    double cpu_seconds()
+    {
+      return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+    }
+    double seconds_since(const std::chrono::steady_clock::time_point &start)
+    {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+
+    template <typename... Arguments>
+    std::string format(const char *pattern, const Arguments... arguments)
+    {
+      char buffer[256];
+      std::snprintf(buffer, sizeof buffer, pattern, arguments...);
+      return buffer;
+    }
+  } // namespace
+
+  Console::Console(std::ostream &stream, const bool active)
+      : stream_(stream)
+      , active_(active)
+      , start_(std::chrono::steady_clock::now())
+      , last_progress_(start_)
+  {
+  }
+
+  void Console::line(const std::string &text)
+  {
+    if (active_)
+      stream_ << text << std::endl;
+  }
+
+  void Console::begin_increment(const unsigned int increment, const unsigned int n_increments, const double t)
+  {
+    increment_    = increment;
+    n_increments_ = n_increments;
+    line("");
+    line(format("Increment %u of %u, t = %g", increment, n_increments, t));
+    line("  geometry threshold status Newton |      force    contact | Krylov");
+  }
+
+  void Console::newton_iteration(const IterationCounts      &pass,
+                                 const unsigned int          iteration,
+                                 const NewtonProblem::Norms &norms,
+                                 const unsigned int          krylov)
+  {
+    line(format("  %8u %9u %6u %6u | %10.3e %10.3e | %6u",
+                pass.geometry,
+                pass.threshold,
+                pass.status,
+                iteration,
+                norms.force,
+                norms.contact,
+                krylov));
+  }
+
+  void Console::remark(const std::string &text)
+  {
+    line("    " + text);
+  }
+
+  void Console::end_increment(const IterationCounts &counts, const std::vector<ContactResultants> &contact)
+  {
+    line(format("  converged: %u geometry, %u threshold, %u status passes, %u Newton iterations",
+                counts.geometry,
+                counts.threshold,
+                counts.status,
+                counts.newton) +
+         (counts.krylov > 0 ? format(", %u Krylov iterations", counts.krylov) : ""));
+    for (const auto &c : contact)
+      line(format("  %s: force on slave (%.5g, %.5g, %.5g), max CPRESS %.5g, area %.5g, %u open, %u slip, %u stick",
+                  c.name.c_str(),
+                  c.slave_force[0],
+                  c.slave_force[1],
+                  c.slave_force[2],
+                  c.maximum_pressure,
+                  c.contact_area,
+                  c.open,
+                  c.slip,
+                  c.stick) +
+           (c.unpaired > 0 ? format(" (%u without master)", c.unpaired) : ""));
+    if (seconds_since(last_progress_) > progress_interval && increment_ > 0 && increment_ < n_increments_)
+    {
+      last_progress_       = std::chrono::steady_clock::now();
+      const double elapsed = seconds_since(start_);
+      line(format("  progress: %u %%, %.0f s elapsed, about %.0f s to go",
+                  100 * increment_ / n_increments_,
+                  elapsed,
+                  elapsed * (n_increments_ - increment_) / increment_));
+    }
+  }
+
+  Console::Timer::Timer(Console &console, const std::string &section)
+      : console_(console)
+      , section_(section)
+      , cpu_(cpu_seconds())
+      , wall_(std::chrono::steady_clock::now())
+  {
+  }
+
+  Console::Timer::~Timer()
+  {
+    Seconds &s = console_.seconds_[section_];
+    s.cpu += cpu_seconds() - cpu_;
+    s.wall += seconds_since(wall_);
+    ++s.calls;
+  }
+
+  void Console::timing_table()
+  {
+    line("");
+    line("  section                  calls     CPU s    wall s");
+    for (const auto &[section, s] : seconds_)
+      line(format("  %-22s %7u %9.2f %9.2f", section.c_str(), s.calls, s.cpu, s.wall));
+    line(format("  %-22s         %9.2f %9.2f", "whole run", cpu_seconds(), seconds_since(start_)));
+  }
+} // namespace Nodus

@@ -1,0 +1,99 @@
+#include <nodus/output/complete_file.h>
+#include <nodus/output/tables.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <sstream>
+
+namespace Nodus
+{
+  namespace
+  {
+    constexpr auto contact_header = "increment,time,pair,"
+                                    "slave force x [force],slave force y [force],slave force z [force],"
+                                    "slave moment x [force length],slave moment y [force length],"
+                                    "slave moment z [force length],"
+                                    "master force x [force],master force y [force],master force z [force],"
+                                    "master moment x [force length],master moment y [force length],"
+                                    "master moment z [force length],"
+                                    "contact area [area],maximum pressure [pressure],"
+                                    "open nodes,slip nodes,stick nodes,unpaired nodes,"
+                                    "geometry passes,threshold passes,status passes,Newton iterations,"
+                                    "Krylov iterations\n";
+
+    constexpr auto reaction_header = "increment,time,condition,force x [force],force y [force],force z [force]\n";
+
+    /// Names come from the user and may hold commas: quoted, inner quotes doubled (RFC 4180).
+    std::string quoted(const std::string &name)
+    {
+      std::string text = "\"";
+      for (const char c : name)
+        text += (c == '"' ? std::string("\"\"") : std::string(1, c));
+      return text + '"';
+    }
+
+    std::ostringstream row()
+    {
+      std::ostringstream text;
+      text.precision(12);
+      return text;
+    }
+
+    void print(std::ostream &out, const Vector3 &v)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        out << ',' << v[d];
+    }
+  } // namespace
+
+  Tables::Tables(const std::string &folder, MPI_Comm communicator)
+      : folder_(folder)
+      , communicator_(communicator)
+      , contact_rows_(contact_header)
+      , reaction_rows_(reaction_header)
+  {
+    make_results_folder(folder, communicator);
+  }
+
+  void Tables::add(const unsigned int                    increment,
+                   const double                          t,
+                   const std::vector<ContactResultants> &contact,
+                   const std::vector<Reaction>          &reactions,
+                   const IterationCounts                &counts)
+  {
+    std::string problem;
+    if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
+    {
+      auto contact_rows = row();
+      for (const auto &pair : contact)
+      {
+        contact_rows << increment << ',' << t << ',' << quoted(pair.name);
+        for (const auto &v : {pair.slave_force, pair.slave_moment, pair.master_force, pair.master_moment})
+          print(contact_rows, v);
+        contact_rows << ',' << pair.contact_area << ',' << pair.maximum_pressure << ',' << pair.open << ',' << pair.slip
+                     << ',' << pair.stick << ',' << pair.unpaired << ',' << counts.geometry << ',' << counts.threshold
+                     << ',' << counts.status << ',' << counts.newton << ',' << counts.krylov << '\n';
+      }
+      contact_rows_ += contact_rows.str();
+
+      auto reaction_rows = row();
+      for (const auto &reaction : reactions)
+      {
+        reaction_rows << increment << ',' << t << ',' << quoted(reaction.name);
+        print(reaction_rows, reaction.force);
+        reaction_rows << '\n';
+      }
+      reaction_rows_ += reaction_rows.str();
+
+      for (const auto &[name, rows] : {std::pair<const char *, const std::string *>{"contact.csv", &contact_rows_},
+                                       {"reactions.csv", &reaction_rows_}})
+        if (problem.empty())
+        {
+          CompleteFile file(folder_, name);
+          file.stream() << *rows;
+          problem = file.finish();
+        }
+    }
+    throw_on_every_rank(problem, communicator_);
+  }
+} // namespace Nodus

@@ -1,0 +1,376 @@
+#include <nodus/output/complete_file.h>
+#include <nodus/output/vtu.h>
+
+#include <deal.II/base/data_out_base.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/base/utilities.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_tools.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/fe/fe_values_extractors.h>
+#include <deal.II/grid/reference_cell.h>
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/trilinos_vector.h>
+
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace Nodus
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /// Rows of a patch's data table, in groups of 1 (scalar), 3 (vector) or 9 (tensor).
+    struct Field
+    {
+      std::string  name;
+      unsigned int components;
+    };
+
+    /// Cells or faces with values at their nodes. Both are filled by hand: the nodes of the deformed configuration
+    /// are then exactly where the solution has them, and stresses and contact fields stay nodal values. deal.II has no
+    /// reader-ready output of a field that lives on a part of the boundary only.
+    template <int patch_dim>
+    class Output : public DataOutInterface<patch_dim, dim>
+    {
+    public:
+      using Patch = DataOutBase::Patch<patch_dim, dim>;
+
+      Output(const std::vector<Field> &fields, const unsigned int degree, const double t)
+      {
+        using namespace DataComponentInterpretation;
+        for (const auto &field : fields)
+        {
+          const unsigned int first = names_.size();
+          for (unsigned int c = 0; c < field.components; ++c)
+            names_.push_back(field.components == 1 ? field.name : field.name + '_' + std::to_string(c));
+          if (field.components > 1)
+            ranges_.emplace_back(first,
+                                 first + field.components - 1,
+                                 field.name,
+                                 field.components == dim ? component_is_part_of_vector : component_is_part_of_tensor);
+        }
+        DataOutBase::VtkFlags flags;
+        flags.time                     = t;
+        flags.print_date_and_time      = false; // equal runs give equal files
+        flags.write_higher_order_cells = degree > 1;
+        flags.compression_level        = DataOutBase::VtkFlags::best_speed;
+        this->set_flags(flags);
+      }
+
+      unsigned int n_values() const
+      {
+        return names_.size();
+      }
+
+      /// A patch of the given degree; the last three rows of its data are the coordinates of the nodes.
+      Patch &add_patch(const unsigned int degree)
+      {
+        patches_.emplace_back();
+        Patch &patch               = patches_.back();
+        patch.patch_index          = patches_.size() - 1;
+        patch.n_subdivisions       = degree;
+        patch.reference_cell       = ReferenceCells::get_hypercube<patch_dim>();
+        patch.points_are_available = true;
+        patch.data.reinit(n_values() + dim, Utilities::fixed_power<patch_dim>(degree + 1));
+        return patch;
+      }
+
+    private:
+      const std::vector<Patch> &get_patches() const override
+      {
+        return patches_;
+      }
+      std::vector<std::string> get_dataset_names() const override
+      {
+        return names_;
+      }
+      std::vector<
+          std::tuple<unsigned int, unsigned int, std::string, DataComponentInterpretation::DataComponentInterpretation>>
+      get_nonscalar_data_ranges() const override
+      {
+        return ranges_;
+      }
+
+      std::vector<Patch>       patches_;
+      std::vector<std::string> names_;
+      std::vector<
+          std::tuple<unsigned int, unsigned int, std::string, DataComponentInterpretation::DataComponentInterpretation>>
+          ranges_;
+    };
+
+    /// Fills one column of a patch's data table row by row, in the order of the fields.
+    class Column
+    {
+    public:
+      Column(Table<2, float> &data, const unsigned int column)
+          : data_(data)
+          , column_(column)
+      {
+      }
+      Column &operator<<(const double value)
+      {
+        data_(row_++, column_) = value;
+        return *this;
+      }
+      Column &operator<<(const Tensor<1, dim> &v)
+      {
+        return *this << v[0] << v[1] << v[2];
+      }
+      Column &operator<<(const SymmetricTensor<2, dim> &T)
+      {
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            *this << T[i][j];
+        return *this;
+      }
+
+    private:
+      Table<2, float> &data_;
+      unsigned int     column_, row_ = 0;
+    };
+
+    const std::vector<Field> body_fields = {
+        {"displacement", dim}, {"cauchy_stress", dim *dim}, {"von_mises", 1}, {"body", 1}};
+
+    const std::vector<Field> contact_fields = {{"CPRESS", 1},
+                                               {"COPEN", 1},
+                                               {"CSHEAR1", 1},
+                                               {"CSHEAR2", 1},
+                                               {"CSLIP1", 1},
+                                               {"CSLIP2", 1},
+                                               {"CSTATUS", 1},
+                                               {"paired", 1},
+                                               {"pair", 1},
+                                               {"normal", dim},
+                                               {"tangent1", dim},
+                                               {"friction_traction", dim},
+                                               {"displacement", dim},
+                                               {"area", 1}};
+
+    /// Where the six components of a symmetric tensor live in two vectors of three components per node.
+    constexpr unsigned int stress_row[2][dim]    = {{0, 1, 2}, {1, 0, 0}};
+    constexpr unsigned int stress_column[2][dim] = {{0, 1, 2}, {2, 2, 1}};
+
+    double von_mises(const SymmetricTensor<2, dim> &stress)
+    {
+      return std::sqrt(1.5) * deviator(stress).norm();
+    }
+  } // namespace
+
+  struct VtuOutput::Implementation
+  {
+    std::string                                   folder;
+    const Bodies                                 &bodies;
+    const DoFHandler<dim>                        &dof_handler;
+    const Mapping<dim>                           &mapping;
+    const std::vector<std::unique_ptr<Material>> &materials;
+
+    MPI_Comm     communicator = bodies.triangulation().get_communicator();
+    unsigned int rank         = Utilities::MPI::this_mpi_process(communicator);
+    unsigned int n_ranks      = Utilities::MPI::n_mpi_processes(communicator);
+    unsigned int degree       = dof_handler.get_fe().degree;
+
+    /// (time, file) of what was written so far, by the name of the series.
+    std::map<std::string, std::vector<std::pair<double, std::string>>> written = {};
+
+    std::array<Vector, 2> nodal_stress(const Vector &u) const;
+    void                  add_bodies(const Vector &u, Output<dim> &output) const;
+    void                  add_contact(const std::vector<ContactFields> &contact, Output<dim - 1> &output) const;
+    template <int patch_dim>
+    void write(const std::string &series, unsigned int increment, double t, const Output<patch_dim> &output);
+  };
+
+  /// Cauchy stress at the nodes: lumped-mass L2 projection, that is the average of the integration points weighted
+  /// with the shape functions. The bodies share no nodes, so nothing is smeared from one body into the other.
+  std::array<Vector, 2> VtuOutput::Implementation::nodal_stress(const Vector &u) const
+  {
+    const auto       &fe    = dof_handler.get_fe();
+    const auto       &owned = dof_handler.locally_owned_dofs();
+    const QGauss<dim> quadrature(degree + 1);
+    FEValues<dim>     fe_values(mapping, fe, quadrature, update_values | update_gradients | update_JxW_values);
+
+    IndexSet relevant;
+    DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+    AffineConstraints<double> hanging_nodes(relevant);
+    DoFTools::make_hanging_node_constraints(dof_handler, hanging_nodes);
+    hanging_nodes.close();
+
+    std::array<Vector, 2> stress;
+    for (auto &v : stress)
+      v.reinit(owned, communicator);
+    Vector mass(owned, communicator);
+
+    const unsigned int                    n_dofs = fe.n_dofs_per_cell();
+    std::vector<types::global_dof_index>  dofs(n_dofs);
+    std::vector<Tensor<2, dim>>           grad_u(quadrature.size());
+    std::array<dealii::Vector<double>, 2> cell_stress;
+    dealii::Vector<double>                cell_mass(n_dofs);
+    const FEValuesExtractors::Vector      displacement(0);
+
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+      {
+        fe_values.reinit(cell);
+        fe_values[displacement].get_function_gradients(u, grad_u);
+        for (auto &v : cell_stress)
+          v.reinit(n_dofs);
+        cell_mass = 0.;
+        for (unsigned int q = 0; q < quadrature.size(); ++q)
+        {
+          const Tensor<2, dim> F     = unit_symmetric_tensor<dim>() + grad_u[q];
+          const auto           sigma = materials[cell->material_id()]->cauchy_stress(F);
+          for (unsigned int i = 0; i < n_dofs; ++i)
+          {
+            const unsigned int c      = fe.system_to_component_index(i).first;
+            const double       weight = fe_values.shape_value(i, q) * fe_values.JxW(q);
+            cell_mass[i] += weight;
+            for (unsigned int part = 0; part < 2; ++part)
+              cell_stress[part][i] += weight * sigma[stress_row[part][c]][stress_column[part][c]];
+          }
+        }
+        cell->get_dof_indices(dofs);
+        hanging_nodes.distribute_local_to_global(cell_mass, dofs, mass);
+        for (unsigned int part = 0; part < 2; ++part)
+          hanging_nodes.distribute_local_to_global(cell_stress[part], dofs, stress[part]);
+      }
+
+    mass.compress(VectorOperation::add);
+    std::array<Vector, 2> ghosted;
+    for (unsigned int part = 0; part < 2; ++part)
+    {
+      stress[part].compress(VectorOperation::add);
+      for (const auto i : owned)
+        if (!hanging_nodes.is_constrained(i))
+          stress[part](i) /= mass(i);
+      stress[part].compress(VectorOperation::insert);
+      hanging_nodes.distribute(stress[part]);
+      ghosted[part].reinit(owned, relevant, communicator);
+      ghosted[part] = stress[part];
+    }
+    return ghosted;
+  }
+
+  void VtuOutput::Implementation::add_bodies(const Vector &u, Output<dim> &output) const
+  {
+    const auto stress = nodal_stress(u);
+
+    const auto        &fe      = dof_handler.get_fe();
+    const auto         to_node = FETools::lexicographic_to_hierarchic_numbering<dim>(degree);
+    const unsigned int n_nodes = to_node.size();
+    std::vector<Point> unit_nodes(n_nodes);
+    for (unsigned int j = 0; j < n_nodes; ++j)
+      unit_nodes[j] = fe.unit_support_point(fe.component_to_system_index(0, to_node[j]));
+    FEValues<dim> nodes(mapping, fe, Quadrature<dim>(unit_nodes), update_quadrature_points);
+
+    std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+      {
+        nodes.reinit(cell);
+        cell->get_dof_indices(dofs);
+        auto &patch = output.add_patch(degree);
+        for (unsigned int j = 0; j < n_nodes; ++j)
+        {
+          Tensor<1, dim>          u_j;
+          SymmetricTensor<2, dim> sigma;
+          for (unsigned int c = 0; c < dim; ++c)
+          {
+            const auto dof = dofs[fe.component_to_system_index(c, to_node[j])];
+            u_j[c]         = u(dof);
+            for (unsigned int part = 0; part < 2; ++part)
+              sigma[stress_row[part][c]][stress_column[part][c]] = stress[part](dof);
+          }
+          Column(patch.data, j) << u_j << sigma << von_mises(sigma) << cell->material_id() + 1.
+                                << nodes.quadrature_point(j) + u_j;
+        }
+      }
+  }
+
+  void VtuOutput::Implementation::add_contact(const std::vector<ContactFields> &contact, Output<dim - 1> &output) const
+  {
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      for (unsigned int f = 0; f < contact[p].faces.size(); ++f)
+        if (contact[p].face_owner[f] == rank)
+        {
+          const auto &c     = contact[p];
+          auto       &patch = output.add_patch(c.degree);
+          for (unsigned int j = 0; j < c.faces[f].size(); ++j)
+          {
+            const unsigned int k = c.faces[f][j];
+            Column(patch.data, j) << c.pressure[k] << c.gap[k] << c.shear[0][k] << c.shear[1][k] << c.slip[0][k]
+                                  << c.slip[1][k] << static_cast<unsigned int>(c.status[k]) << c.paired[k] << p + 1.
+                                  << c.normal[k] << c.tangent1[k] << c.friction[k] << c.displacement[k] << c.area[k]
+                                  << c.X[k] + c.displacement[k];
+          }
+        }
+  }
+
+  /// One piece per rank (deal.II 9.4 distorts second-order cells when pieces share a file), then the record of the
+  /// pieces, then the time series: whoever finds a file finds everything that it refers to.
+  template <int patch_dim>
+  void VtuOutput::Implementation::write(const std::string       &series,
+                                        const unsigned int       increment,
+                                        const double             t,
+                                        const Output<patch_dim> &output)
+  {
+    const std::string stem  = series + '_' + Utilities::int_to_string(increment, 4);
+    const auto        piece = [&](const unsigned int r)
+    { return stem + (n_ranks == 1 ? "" : '.' + Utilities::int_to_string(r, 4)) + ".vtu"; };
+
+    CompleteFile file(folder, piece(rank));
+    output.write_vtu(file.stream());
+    throw_on_every_rank(file.finish(), communicator);
+
+    auto &files = written[series];
+    files.emplace_back(t, stem + (n_ranks == 1 ? ".vtu" : ".pvtu"));
+    std::string problem;
+    if (rank == 0 && n_ranks > 1)
+    {
+      std::vector<std::string> pieces(n_ranks);
+      for (unsigned int r = 0; r < n_ranks; ++r)
+        pieces[r] = piece(r);
+      CompleteFile record(folder, files.back().second);
+      output.write_pvtu_record(record.stream(), pieces);
+      problem = record.finish();
+    }
+    if (rank == 0 && problem.empty())
+    {
+      CompleteFile record(folder, series + ".pvd");
+      DataOutBase::write_pvd_record(record.stream(), files);
+      problem = record.finish();
+    }
+    throw_on_every_rank(problem, communicator);
+  }
+
+  VtuOutput::VtuOutput(const std::string                            &folder,
+                       const Bodies                                 &bodies,
+                       const DoFHandler<dim>                        &dof_handler,
+                       const Mapping<dim>                           &mapping,
+                       const std::vector<std::unique_ptr<Material>> &materials)
+      : implementation_(new Implementation{folder, bodies, dof_handler, mapping, materials})
+  {
+    make_results_folder(folder, implementation_->communicator);
+  }
+
+  VtuOutput::~VtuOutput() = default;
+
+  void VtuOutput::write(const unsigned int                increment,
+                        const double                      t,
+                        const Vector                     &u,
+                        const std::vector<ContactFields> &contact)
+  {
+    Output<dim> body_output(body_fields, implementation_->degree, t);
+    implementation_->add_bodies(u, body_output);
+    implementation_->write("bodies", increment, t, body_output);
+
+    if (!contact.empty())
+    {
+      Output<dim - 1> contact_output(contact_fields, implementation_->degree, t);
+      implementation_->add_contact(contact, contact_output);
+      implementation_->write("contact", increment, t, contact_output);
+    }
+  }
+} // namespace Nodus

@@ -1,0 +1,411 @@
+#include <nodus/parameter_file.h>
+#include <nodus/parameters.h>
+
+#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/patterns.h>
+#include <deal.II/base/utilities.h>
+
+#include <filesystem>
+#include <limits>
+
+// One line per key: its text, the member it sets, the pattern of its values and what it means.
+
+namespace Nodus
+{
+  namespace
+  {
+    namespace Patterns = dealii::Patterns;
+    using dealii::ParameterHandler;
+
+    /// The texts of an enum in the .prm file. This is the only place where they are written.
+    template <typename Enum>
+    using Names = std::vector<std::pair<Enum, std::string>>;
+
+    const Names<MaterialParameters::Law> law_names = {
+        {MaterialParameters::Law::linear_elastic, "linear elastic"},
+        {MaterialParameters::Law::st_venant_kirchhoff, "St Venant-Kirchhoff"},
+        {MaterialParameters::Law::neo_hookean, "neo-Hookean"},
+        {MaterialParameters::Law::mooney_rivlin, "Mooney-Rivlin"}};
+
+    const Names<BoundaryConditionParameters::Type> type_names = {
+        {BoundaryConditionParameters::Type::displacement, "displacement"},
+        {BoundaryConditionParameters::Type::traction, "traction"},
+        {BoundaryConditionParameters::Type::pressure, "pressure"},
+        {BoundaryConditionParameters::Type::body_force, "body force"},
+        {BoundaryConditionParameters::Type::spring, "spring"}};
+
+    const Names<ContactPairParameters::SurfaceMeasure> surface_measure_names = {
+        {ContactPairParameters::SurfaceMeasure::current, "current"},
+        {ContactPairParameters::SurfaceMeasure::reference, "reference"}};
+
+    const Names<ContactPairParameters::Weights> weights_names = {
+        {ContactPairParameters::Weights::nodal_quadrature, "nodal quadrature"},
+        {ContactPairParameters::Weights::dual, "dual"},
+        {ContactPairParameters::Weights::consistent, "consistent"}};
+
+    const Names<ContactPairParameters::Normal> normal_names = {
+        {ContactPairParameters::Normal::master_facet, "master facet"},
+        {ContactPairParameters::Normal::averaged, "averaged"}};
+
+    const Names<ContactPairParameters::InitialStatus> initial_status_names = {
+        {ContactPairParameters::InitialStatus::by_gap, "by gap"},
+        {ContactPairParameters::InitialStatus::closed, "closed"},
+        {ContactPairParameters::InitialStatus::open, "open"}};
+
+    const Names<ContactPairParameters::StatusTest> status_test_names = {
+        {ContactPairParameters::StatusTest::weighted, "weighted"}, {ContactPairParameters::StatusTest::raw, "raw"}};
+
+    const Names<LinearSolverParameters::Type> solver_names = {{LinearSolverParameters::Type::direct, "direct"},
+                                                              {LinearSolverParameters::Type::block, "block"}};
+
+    const Names<unsigned int> component_names = {{0, "x"}, {1, "y"}, {2, "z"}};
+
+    template <typename Enum>
+    std::string selection(const Names<Enum> &names)
+    {
+      std::string texts;
+      for (const auto &[value, text] : names)
+        texts += (texts.empty() ? "" : "|") + text;
+      return texts;
+    }
+
+    template <typename Enum>
+    Enum value_of(const std::string &wanted, const Names<Enum> &names)
+    {
+      for (const auto &[value, text] : names)
+        if (text == wanted)
+          return value;
+      throw InputError("'" + wanted + "' is none of " + selection(names)); // kept out by the pattern
+    }
+
+    template <typename Enum>
+    void add_choice(ParameterHandler  &prm,
+                    const std::string &key,
+                    Enum              &value,
+                    const Names<Enum> &names,
+                    const std::string &documentation)
+    {
+      std::string default_text;
+      for (const auto &[candidate, text] : names)
+        if (candidate == value)
+          default_text = text;
+      prm.declare_entry(key, default_text, Patterns::Selection(selection(names)), documentation);
+      prm.add_action(key, [&value, &names](const std::string &text) { value = value_of(text, names); });
+    }
+
+    /// Axes x, y, z as 0, 1, 2.
+    void add_components(ParameterHandler          &prm,
+                        const std::string         &key,
+                        std::vector<unsigned int> &components,
+                        const std::string         &documentation)
+    {
+      prm.declare_entry(
+          key, "", Patterns::List(Patterns::Selection(selection(component_names)), 0, dim), documentation);
+      prm.add_action(key,
+                     [&components](const std::string &text)
+                     {
+                       components.clear();
+                       for (const auto &name : dealii::Utilities::split_string_list(text, ','))
+                         components.push_back(value_of(name, component_names));
+                     });
+    }
+
+    /// Expressions separated by ';' because commas belong to the expressions: if(t<1, t, 1).
+    void add_expressions(ParameterHandler         &prm,
+                         const std::string        &key,
+                         std::vector<std::string> &expressions,
+                         const std::string        &documentation)
+    {
+      prm.declare_entry(key, "", Patterns::Anything(), documentation);
+      prm.add_action(key,
+                     [&expressions](const std::string &text)
+                     { expressions = dealii::Utilities::split_string_list(text, ';'); });
+    }
+
+    const Patterns::Double  any_number, not_negative(0.), positive(std::numeric_limits<double>::min());
+    const Patterns::Integer count(0), at_least_one(1);
+    const Patterns::List    ids(Patterns::Integer(0), 0, std::numeric_limits<unsigned int>::max(), ",");
+
+    /// @p prefix is "Slave ", "Master " or empty.
+    void add_region(ParameterHandler  &prm,
+                    const std::string &prefix,
+                    RegionParameters  &region,
+                    const std::string &every_body,
+                    const std::string &where)
+    {
+      prm.add_parameter(prefixed(prefix, "Body"), region.body, "Number of the body [-]" + every_body + ".", count);
+      prm.add_parameter(
+          prefixed(prefix, "Boundary ids"), region.boundary_ids, "Boundary ids of its faces [-], e.g. 1, 5.", ids);
+      prm.add_parameter(prefixed(prefix, "Where"),
+                        region.where,
+                        "Condition on the reference coordinates x, y, z [length] that thins the faces out, e.g. "
+                        "abs(x)<1e-9; empty: no condition. " +
+                            where,
+                        Patterns::Anything());
+    }
+
+    void add(ParameterHandler &prm, MaterialParameters &material)
+    {
+      add_choice(prm, "Law", material.law, law_names, "Elastic law [-]. All but the first are finite-strain laws.");
+      prm.add_parameter("Young's modulus",
+                        material.youngs_modulus,
+                        "Young's modulus of the undeformed material [pressure].",
+                        positive);
+      prm.add_parameter("Poisson's ratio",
+                        material.poissons_ratio,
+                        "Poisson's ratio of the undeformed material [-], > -1 and < 0.5.",
+                        any_number);
+      prm.add_parameter("Mooney-Rivlin ratio",
+                        material.mooney_rivlin_ratio,
+                        "Ratio of the second to the first constant of the Mooney-Rivlin law [-]; 0 is neo-Hookean.",
+                        not_negative);
+    }
+
+    void add(ParameterHandler &prm, BodyParameters &body)
+    {
+      prm.add_parameter("Name", body.name, "Name in tables and messages [-].", Patterns::Anything());
+      prm.add_parameter("Mesh file",
+                        body.mesh_file,
+                        "Gmsh file of linear hexahedra [-], relative to the folder of the .prm file. A body has "
+                        "either a mesh file or a generator.",
+                        Patterns::Anything());
+      prm.add_parameter(
+          "Volume ids", body.volume_ids, "Physical volumes taken from the mesh file [-]; empty: all.", ids);
+      prm.add_parameter("Generator",
+                        body.generator,
+                        "Function of deal.II's GridGenerator that makes the mesh [-], e.g. "
+                        "subdivided_hyper_rectangle.",
+                        Patterns::Anything());
+      prm.add_parameter("Generator arguments",
+                        body.generator_arguments,
+                        "Arguments of the generator separated by ':' [length where they are coordinates], e.g. "
+                        "3,3,2 : 0,0,0 : 1,1,1 : true.",
+                        Patterns::Anything());
+      prm.add_parameter("Scale", body.scale, "Factor on all coordinates, before the rotation [-].", positive);
+      prm.add_parameter("Rotation axis", body.rotation_axis, "Axis of the rotation about the origin [-].");
+      prm.add_parameter("Rotation angle", body.rotation_angle, "Angle of the rotation [degrees].", any_number);
+      prm.add_parameter("Translation", body.translation, "Shift after scaling and rotation [length].");
+      prm.add_parameter(
+          "Global refinement", body.global_refinement, "Times every cell of the body is split into eight [-].", count);
+      prm.enter_subsection("Material");
+      add(prm, body.material);
+      prm.leave_subsection();
+    }
+
+    void add(ParameterHandler &prm, BoundaryConditionParameters &condition)
+    {
+      prm.add_parameter("Name", condition.name, "Name in tables and messages [-].", Patterns::Anything());
+      add_choice(
+          prm,
+          "Type",
+          condition.type,
+          type_names,
+          "What is prescribed [-]: displacement [length], traction per reference area [pressure], pressure that "
+          "follows the surface and pushes on the body where positive [pressure], body force per reference volume "
+          "[force/volume], spring to the ground per reference area [pressure/length].");
+      add_region(
+          prm,
+          "",
+          condition.region,
+          "; 0: every body",
+          "For displacements it is asked at the nodes, for loads at the centres of the faces (body force: cells).");
+      add_components(prm,
+                     "Components",
+                     condition.components,
+                     "Directions the condition acts in [-], e.g. x, z; none for a pressure.");
+      add_expressions(prm,
+                      "Value",
+                      condition.value,
+                      "Expressions of x, y, z [length] and the time t [-], separated by ';': one for each component or "
+                      "one for all; see Type for the unit.");
+    }
+
+    void add(ParameterHandler &prm, ContactPairParameters &pair)
+    {
+      const std::string where = "It is asked at the centres of the faces.";
+      prm.add_parameter("Name", pair.name, "Name in tables and messages [-].", Patterns::Anything());
+      add_region(prm, "Slave ", pair.slave, " that carries the contact pressures", where);
+      add_region(prm, "Master ", pair.master, " that the slave nodes are projected onto", where);
+      prm.add_parameter("Friction coefficient",
+                        pair.friction_coefficient,
+                        "Coulomb's coefficient [-]; 0: no friction.",
+                        not_negative);
+      prm.add_parameter("Normal augmentation factor",
+                        pair.normal_augmentation_factor,
+                        "Factor on Young's modulus over face size, the scale of gaps against pressures [-]. It "
+                        "changes the path of the iteration, not the solution.",
+                        positive);
+      prm.add_parameter("Tangential augmentation factor",
+                        pair.tangential_augmentation_factor,
+                        "Factor on the scale of slips against friction tractions [-]. It changes the path of the "
+                        "iteration, not the solution.",
+                        positive);
+      add_choice(
+          prm, "Surface measure", pair.surface_measure, surface_measure_names, "Area that pressures refer to [-].");
+      add_choice(prm, "Weights", pair.weights, weights_names, "Integration of the contact terms over slave faces [-].");
+      add_choice(prm,
+                 "Normal",
+                 pair.normal,
+                 normal_names,
+                 "Contact normal [-]: of the master facet or smoothed over the facets at each master node.");
+      prm.add_parameter("Search distance",
+                        pair.search_distance,
+                        "Slave nodes farther than this from the master have no partner [length]; 0: automatic.",
+                        not_negative);
+      prm.add_parameter("Projection tolerance",
+                        pair.projection_tolerance,
+                        "How far a projection may hang over the rim of the master surface [face sizes].",
+                        not_negative);
+      add_choice(prm,
+                 "Initial status",
+                 pair.initial_status,
+                 initial_status_names,
+                 "Status of the slave nodes at the start [-].");
+      add_choice(prm,
+                 "Status test",
+                 pair.status_test,
+                 status_test_names,
+                 "Pressure used to decide between open and closed [-]: the weighted one is the nodal force over the "
+                 "nodal area.");
+    }
+
+    void add(ParameterHandler &prm, LoopParameters &loop, const std::string &tolerance)
+    {
+      prm.add_parameter("Maximum passes", loop.maximum_passes, "Passes before the increment is cut [-].", at_least_one);
+      if (!tolerance.empty())
+        prm.add_parameter("Tolerance", loop.tolerance, tolerance, positive);
+    }
+
+    void add(ParameterHandler &prm, NewtonParameters &newton)
+    {
+      prm.add_parameter(
+          "Maximum iterations", newton.maximum_iterations, "Iterations before the increment is cut [-].", at_least_one);
+      prm.add_parameter("Force tolerance",
+                        newton.force_tolerance,
+                        "Largest nodal force out of balance relative to the largest nodal force [-].",
+                        positive);
+      prm.add_parameter("Contact tolerance",
+                        newton.contact_tolerance,
+                        "Gap and slip relative to the displacement of the step, friction law absolute [-].",
+                        positive);
+      prm.add_parameter("Line search", newton.line_search, "Shorten a correction that increases the residual [-].");
+    }
+
+    void add(ParameterHandler &prm, LinearSolverParameters &solver)
+    {
+      add_choice(prm,
+                 "Type",
+                 solver.type,
+                 solver_names,
+                 "Linear solver [-]: direct is MUMPS, block is FGMRES with algebraic multigrid for large models.");
+      prm.add_parameter("Tolerance", solver.tolerance, "Block solver: relative residual [-].", positive);
+      prm.add_parameter("Maximum iterations",
+                        solver.maximum_iterations,
+                        "Block solver: iterations before it gives up [-].",
+                        at_least_one);
+      prm.add_parameter("Augmentation factor",
+                        solver.augmentation_factor,
+                        "Block solver: weight of the constraints in units of the diagonal of the stiffness [-].",
+                        not_negative);
+    }
+
+    void add(ParameterHandler &prm, LoadSteppingParameters &load)
+    {
+      const unsigned int many = std::numeric_limits<unsigned int>::max();
+      prm.add_parameter("Interval ends",
+                        load.interval_ends,
+                        "Increasing times at which the intervals end [-]; the first interval starts at 0.",
+                        Patterns::List(not_negative, 1, many, ","));
+      prm.add_parameter("Increments",
+                        load.increments,
+                        "Number of equal increments of each interval [-].",
+                        Patterns::List(at_least_one, 1, many, ","));
+    }
+
+    void add(ParameterHandler &prm, OutputParameters &output)
+    {
+      prm.add_parameter("Results folder",
+                        output.results_folder,
+                        "Folder of all results [-], relative to the working folder; empty: results/<name of the .prm "
+                        "file>.",
+                        Patterns::Anything());
+      prm.add_parameter("VTU interval",
+                        output.vtu_interval,
+                        "Increments between two files of the fields [-]; 0: the last increment only.",
+                        count);
+    }
+
+    template <typename Struct, typename... Arguments>
+    void add_subsection(ParameterHandler &prm, const std::string &name, Struct &parameters, const Arguments &...more)
+    {
+      prm.enter_subsection(name);
+      add(prm, parameters, more...);
+      prm.leave_subsection();
+    }
+
+    template <typename Struct>
+    void add_numbered(ParameterHandler &prm, const std::string &name, std::vector<Struct> &all)
+    {
+      for (unsigned int i = 0; i < all.size(); ++i)
+        add_subsection(prm, name + ' ' + std::to_string(i + 1), all[i]);
+    }
+
+    template <typename Struct>
+    void name_the_nameless(std::vector<Struct> &all, const std::string &name)
+    {
+      for (unsigned int i = 0; i < all.size(); ++i)
+        if (all[i].name.empty())
+          all[i].name = name + ' ' + std::to_string(i + 1);
+    }
+  } // namespace
+
+  void Parameters::add_parameters(ParameterHandler &prm)
+  {
+    prm.add_parameter("Title", title, "Title of the case, for the log [-].", Patterns::Anything());
+    prm.enter_subsection("Discretization");
+    prm.add_parameter("Degree", degree, "Polynomial degree of the displacement [-].", Patterns::Integer(1, 2));
+    prm.leave_subsection();
+    add_numbered(prm, "Body", bodies);
+    add_numbered(prm, "Boundary condition", boundary_conditions);
+    add_numbered(prm, "Contact pair", contact_pairs);
+    add_subsection(prm,
+                   "Geometry loop",
+                   geometry_loop,
+                   "Change of the displacement in a pass, relative to the displacement of the increment [-].");
+    add_subsection(prm, "Threshold loop", threshold_loop, "Change of the contact pressure, relative [-].");
+    add_subsection(prm, "Status loop", status_loop, ""); // no tolerance: no status may change
+    add_subsection(prm, "Newton", newton);
+    add_subsection(prm, "Linear solver", linear_solver);
+    add_subsection(prm, "Load stepping", load_stepping);
+    add_subsection(prm, "Output", output);
+  }
+
+  Parameters Parameters::read(const std::string &file, const std::vector<std::string> &overrides)
+  {
+    const ParameterFile text(file, overrides);
+
+    Parameters parameters;
+    parameters.file = file;
+    parameters.bodies.resize(text.count("Body"));
+    parameters.boundary_conditions.resize(text.count("Boundary condition"));
+    parameters.contact_pairs.resize(text.count("Contact pair"));
+
+    ParameterHandler prm; // holds references to the members of parameters
+    parameters.add_parameters(prm);
+    text.apply_to(prm);
+
+    const auto folder = std::filesystem::path(file).parent_path();
+    for (auto &body : parameters.bodies)
+      if (!body.mesh_file.empty())
+        body.mesh_file = (folder / body.mesh_file).lexically_normal().string();
+    for (auto &condition : parameters.boundary_conditions)
+      if (condition.value.size() == 1 && condition.components.size() > 1)
+        condition.value.resize(condition.components.size(), std::string(condition.value[0]));
+
+    parameters.check(text);
+    name_the_nameless(parameters.bodies, "body");
+    name_the_nameless(parameters.boundary_conditions, "boundary condition");
+    name_the_nameless(parameters.contact_pairs, "contact pair");
+    return parameters;
+  }
+} // namespace Nodus

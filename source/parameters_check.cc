@@ -1,0 +1,232 @@
+#include <nodus/parameter_file.h>
+#include <nodus/parameters.h>
+
+#include <deal.II/base/function_parser.h>
+#include <deal.II/base/numbers.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <set>
+#include <sstream>
+
+// What a single value cannot tell: fixes are part of every message, file and line are added by ParameterFile.
+
+namespace Nodus
+{
+  namespace
+  {
+    /// A subsection under inspection.
+    struct Section
+    {
+      const ParameterFile &file;
+      std::string          name;
+
+      void require(const bool satisfied, const std::string &key, const std::string &message) const
+      {
+        if (!satisfied)
+          file.refuse(name, key, message);
+      }
+    };
+
+    /// muParser's complaint about an expression of @p variables; empty when it is fine.
+    std::string complaint(const std::string &expression, const std::string &variables)
+    {
+      // deal.II prints its own copy of the complaint to std::cerr.
+      std::ostringstream    unwanted;
+      std::streambuf *const screen = std::cerr.rdbuf(unwanted.rdbuf());
+      std::string           message;
+      try
+      {
+        dealii::FunctionParser<dim> function(1);
+        function.initialize(variables, expression, {{"pi", dealii::numbers::PI}}, variables == "x,y,z,t");
+        function.value(Point(0.5, 0.25, 0.125)); // parsed at the first evaluation
+      }
+      catch (const dealii::ExceptionBase &error)
+      {
+        std::ostringstream text;
+        error.print_info(text);
+        message              = text.str();
+        const auto parser    = message.find("said: ");
+        message              = parser == std::string::npos ? message : message.substr(parser + 6);
+        const auto last_word = message.find_last_not_of(". \n");
+        message.resize(last_word + 1);
+      }
+      std::cerr.rdbuf(screen);
+      return message;
+    }
+
+    void check_expression(const Section &section, const std::string &key, const std::string &text, const bool timed)
+    {
+      const std::string problem = complaint(text, timed ? "x,y,z,t" : "x,y,z");
+      section.require(problem.empty(),
+                      key,
+                      "has the expression '" + text + "' that does not parse: " + problem + "; variables are x, y, z" +
+                          (timed ? ", t" : "") + ", constants pi");
+    }
+
+    void check(const Section &section, const MaterialParameters &material)
+    {
+      section.require(material.poissons_ratio > -1. && material.poissons_ratio < 0.5,
+                      "Poisson's ratio",
+                      "must be > -1 and < 0.5; for nearly incompressible material take 0.49");
+      section.require(material.mooney_rivlin_ratio == 0. || material.law == MaterialParameters::Law::mooney_rivlin,
+                      "Mooney-Rivlin ratio",
+                      "has no effect on this law; remove it or set Law = Mooney-Rivlin");
+    }
+
+    void check(const Section &section, const BodyParameters &body)
+    {
+      section.require(!body.mesh_file.empty() || !body.generator.empty(),
+                      "Mesh file",
+                      "is missing; give either Mesh file or Generator");
+      section.require(body.mesh_file.empty() || body.generator.empty(),
+                      "Generator",
+                      "is given besides Mesh file; remove one of the two");
+      if (!body.mesh_file.empty())
+      {
+        section.require(std::filesystem::is_regular_file(body.mesh_file),
+                        "Mesh file",
+                        "is no file: " + body.mesh_file + "; names are relative to the folder of the .prm file");
+        section.require(body.generator_arguments.empty(), "Generator arguments", "goes with Generator only; remove it");
+      }
+      else
+        section.require(body.volume_ids.empty(), "Volume ids", "goes with Mesh file only; remove it");
+      section.require(body.rotation_angle == 0. || body.rotation_axis.norm() > 0.,
+                      "Rotation axis",
+                      "must not be zero when there is a Rotation angle; give a direction such as 0, 0, 1");
+      check({section.file, section.name + "/Material"}, body.material);
+    }
+
+    void check(const Section          &section,
+               const RegionParameters &region,
+               const std::string      &prefix,
+               const unsigned int      n_bodies,
+               const unsigned int      smallest_body)
+    {
+      const std::string choice = (smallest_body == 0 ? "0 (every body) to " : "1 to ") + std::to_string(n_bodies);
+      section.require(region.body >= smallest_body && region.body <= n_bodies,
+                      prefixed(prefix, "Body"),
+                      "is " + std::to_string(region.body) + "; give the number of a body, " + choice);
+      if (!region.where.empty())
+        check_expression(section, prefixed(prefix, "Where"), region.where, false);
+    }
+
+    void check(const Section &section, const BoundaryConditionParameters &condition, const unsigned int n_bodies)
+    {
+      using Type = BoundaryConditionParameters::Type;
+      check(section, condition.region, "", n_bodies, 0);
+      const bool on_boundary = condition.type != Type::body_force;
+      section.require(condition.region.boundary_ids.empty() != on_boundary,
+                      "Boundary ids",
+                      on_boundary ? "is missing; give the ids of the faces the condition acts on"
+                                  : "has no meaning for a body force; remove it");
+
+      const bool directed = condition.type != Type::pressure;
+      section.require(condition.components.empty() != directed,
+                      "Components",
+                      directed ? "is missing; give some of x, y, z"
+                               : "has no meaning for a pressure, which acts along the normal; remove it");
+      const std::set<unsigned int> distinct(condition.components.begin(), condition.components.end());
+      section.require(distinct.size() == condition.components.size(),
+                      "Components",
+                      "names a direction twice; give each of x, y, z at most once");
+
+      const std::size_t wanted = directed ? condition.components.size() : 1;
+      section.require(condition.value.size() == wanted,
+                      "Value",
+                      condition.value.empty()
+                          ? "is missing; give an expression of x, y, z, t such as 0 or -0.1*t"
+                          : "has " + std::to_string(condition.value.size()) + " expressions for " +
+                                std::to_string(wanted) + (directed ? " components" : " pressure") +
+                                "; separate expressions by ';', one for each component or one for all");
+      for (const auto &expression : condition.value)
+      {
+        section.require(!expression.empty(), "Value", "has an empty expression; write 0 for zero");
+        check_expression(section, "Value", expression, true);
+      }
+    }
+
+    bool share_faces(const RegionParameters &a, const RegionParameters &b)
+    {
+      const auto in_b = [&b](const dealii::types::boundary_id id)
+      { return std::count(b.boundary_ids.begin(), b.boundary_ids.end(), id) > 0; };
+      // Different predicates may separate faces of one id; the mesh will tell.
+      return a.body == b.body && a.where == b.where && std::any_of(a.boundary_ids.begin(), a.boundary_ids.end(), in_b);
+    }
+
+    void check(const Section &section, const ContactPairParameters &pair, const unsigned int n_bodies)
+    {
+      const std::string missing = "is missing; give the boundary ids of the faces in contact";
+      check(section, pair.slave, "Slave ", n_bodies, 1);
+      section.require(!pair.slave.boundary_ids.empty(), "Slave boundary ids", missing);
+      check(section, pair.master, "Master ", n_bodies, 1);
+      section.require(!pair.master.boundary_ids.empty(), "Master boundary ids", missing);
+      section.require(!share_faces(pair.slave, pair.master),
+                      "Master boundary ids",
+                      "names faces that are slaves of the same pair; give the two sides different bodies or ids");
+    }
+
+    void check(const Section &section, const LinearSolverParameters &solver)
+    {
+      section.require(solver.tolerance < 1., "Tolerance", "must be < 1; it is relative, for example 1e-10");
+    }
+
+    void check(const Section &section, const LoadSteppingParameters &load)
+    {
+      double begin = 0.;
+      for (const double end : load.interval_ends)
+      {
+        std::ostringstream message;
+        message << "goes from " << begin << " to " << end << "; the times must increase and be > 0";
+        section.require(end > begin, "Interval ends", message.str());
+        begin = end;
+      }
+      section.require(load.increments.size() == load.interval_ends.size(),
+                      "Increments",
+                      "has " + std::to_string(load.increments.size()) + " entries for " +
+                          std::to_string(load.interval_ends.size()) +
+                          " entries of Interval ends; give one number for each interval");
+    }
+
+    template <typename Struct>
+    void check_names(const ParameterFile &file, const std::string &subsection, const std::vector<Struct> &all)
+    {
+      for (unsigned int i = 0; i < all.size(); ++i)
+        for (unsigned int j = 0; j < i; ++j)
+          Section{file, subsection + ' ' + std::to_string(i + 1)}.require(
+              all[i].name.empty() || all[i].name != all[j].name,
+              "Name",
+              "is also the name of '" + subsection + ' ' + std::to_string(j + 1) +
+                  "'; tables could not tell them apart");
+    }
+  } // namespace
+
+  void Parameters::check(const ParameterFile &file) const
+  {
+    const unsigned int n_bodies = bodies.size();
+    if (n_bodies == 0)
+      throw InputError(this->file + ": there is no body; add a subsection 'Body 1'");
+
+    for (unsigned int i = 0; i < n_bodies; ++i)
+      Nodus::check({file, "Body " + std::to_string(i + 1)}, bodies[i]);
+    for (unsigned int i = 0; i < boundary_conditions.size(); ++i)
+      Nodus::check({file, "Boundary condition " + std::to_string(i + 1)}, boundary_conditions[i], n_bodies);
+    for (unsigned int i = 0; i < contact_pairs.size(); ++i)
+    {
+      const Section section{file, "Contact pair " + std::to_string(i + 1)};
+      Nodus::check(section, contact_pairs[i], n_bodies);
+      for (unsigned int j = 0; j < i; ++j)
+        section.require(!share_faces(contact_pairs[i].slave, contact_pairs[j].slave),
+                        "Slave boundary ids",
+                        "names faces that are already slaves of 'Contact pair " + std::to_string(j + 1) +
+                            "'; a face can be slave only once");
+    }
+    check_names(file, "Body", bodies);
+    check_names(file, "Boundary condition", boundary_conditions);
+    check_names(file, "Contact pair", contact_pairs);
+
+    Nodus::check({file, "Linear solver"}, linear_solver);
+    Nodus::check({file, "Load stepping"}, load_stepping);
+  }
+} // namespace Nodus

@@ -1,0 +1,340 @@
+#include <nodus/solve/direct_solver.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <Epetra_CrsMatrix.h>
+#include <Epetra_Map.h>
+#include <dmumps_c.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Nodus
+{
+  namespace
+  {
+    // MUMPS numbers its control and info entries from 1.
+    int &icntl(DMUMPS_STRUC_C &mumps, const unsigned int i)
+    {
+      return mumps.icntl[i - 1];
+    }
+    int infog(const DMUMPS_STRUC_C &mumps, const unsigned int i)
+    {
+      return mumps.infog[i - 1];
+    }
+
+    std::string meaning(const DMUMPS_STRUC_C &mumps)
+    {
+      const std::string detail = std::to_string(infog(mumps, 2));
+      switch (infog(mumps, 1))
+      {
+        case -5:
+        case -7:
+        case -13:
+          return "an allocation failed (" + detail +
+                 " entries; negative: in millions): use more ranks or memory, or 'Type = block'";
+        case -6:
+          return "the matrix is structurally singular (structural rank " + detail + ")";
+        case -8:
+        case -9:
+        case -11:
+        case -14:
+        case -15:
+        case -17:
+        case -18:
+        case -19:
+        case -20:
+          return "the working space stayed too small although it was enlarged repeatedly";
+        case -10:
+          return "the matrix is numerically singular";
+        case -51:
+        case -52:
+          return "the problem exceeds the 32-bit integers of an ordering: use 'Type = block'";
+        default:
+          return "see the MUMPS users' guide, INFOG(2) = " + detail;
+      }
+    }
+
+    // The estimate of the working space does not foresee the pivots that are delayed for stability.
+    bool asks_for_more_space(const DMUMPS_STRUC_C &mumps)
+    {
+      const int code = infog(mumps, 1);
+      return code == -8 || code == -9 || code == -11 || code == -14 || code == -15 || (code <= -17 && code >= -20);
+    }
+
+    // Triplets name multipliers of any rank, so every rank needs every scale; index: flat - n_u.
+    std::vector<double> gather_scale(const LinearSystem &system)
+    {
+      const BlockLayout  &layout = *system.layout;
+      const DoFIndex      n      = layout.n_slave_nodes;
+      std::vector<double> scale(3 * n, 0.);
+      std::size_t         position = 0;
+      for (const DoFIndex k : layout.owned[1])
+      {
+        scale[k]             = system.multiplier_scale.at(position++);
+        scale[n + 2 * k]     = system.multiplier_scale.at(position++);
+        scale[n + 2 * k + 1] = system.multiplier_scale.at(position++);
+      }
+      dealii::Utilities::MPI::sum(scale, layout.communicator, scale);
+      return scale;
+    }
+
+    double norm(const std::vector<double> &v)
+    {
+      double sum = 0.;
+      for (const double entry : v)
+        sum += entry * entry;
+      return std::sqrt(sum);
+    }
+  } // namespace
+
+  struct DirectSolver::Instance
+  {
+    DMUMPS_STRUC_C mumps{};
+    MPI_Comm       communicator;
+    bool           analysed = false;
+
+    explicit Instance(const MPI_Comm communicator)
+        : communicator(communicator)
+    {
+      mumps.par          = 1; // rank 0 takes part in the factorisation
+      mumps.sym          = 2; // general symmetric
+      mumps.comm_fortran = MPI_Comm_c2f(communicator);
+      run(-1);
+      for (unsigned int i = 1; i <= 4; ++i)
+        icntl(mumps, i) = i == 4 ? 0 : -1; // silent
+      icntl(mumps, 13) = 1;                // no ScaLAPACK root: it neither counts the inertia nor finds null pivots
+      icntl(mumps, 14) = 30;               // per cent of working space above the estimate
+      icntl(mumps, 18) = 3;                // distributed entries
+      icntl(mumps, 24) = 1;                // null pivots are found, fixed and listed
+      mumps.cntl[2]    = 1e-13;            // pivot rows below this times |A| are null; the default misses round-off
+    }
+
+    ~Instance()
+    {
+      int finalised = 0;
+      MPI_Finalized(&finalised);
+      if (!finalised)
+        run(-2);
+    }
+
+    Instance(const Instance &)            = delete;
+    Instance &operator=(const Instance &) = delete;
+
+    // @returns success, the same on every rank
+    bool run(const int job)
+    {
+      mumps.job = job;
+      dmumps_c(&mumps);
+      return infog(mumps, 1) >= 0;
+    }
+  };
+
+  DirectSolver::DirectSolver(const BlockLayout &layout)
+      : communicator_(layout.communicator)
+      , size_(0)
+  {
+  }
+
+  DirectSolver::~DirectSolver() = default;
+
+  bool DirectSolver::collect_entries(const LinearSystem &system, const std::vector<double> &scale)
+  {
+    const DoFIndex n_u     = system.layout->n_u;
+    bool           changed = false, finite = true;
+    std::size_t    n_entries = 0;
+
+    const auto add = [&](const DoFIndex i, const DoFIndex j, const double v)
+    {
+      const int    row = static_cast<int>(i) + 1, column = static_cast<int>(j) + 1;
+      const double scaled = v * (i < n_u ? 1. : scale[i - n_u]) * (j < n_u ? 1. : scale[j - n_u]);
+      finite              = finite && std::isfinite(scaled);
+      if (n_entries == row_.size())
+      {
+        changed = true;
+        row_.push_back(row);
+        column_.push_back(column);
+        value_.push_back(scaled);
+      }
+      else
+      {
+        changed            = changed || row_[n_entries] != row || column_[n_entries] != column;
+        row_[n_entries]    = row;
+        column_[n_entries] = column;
+        value_[n_entries]  = scaled;
+      }
+      ++n_entries;
+    };
+
+    const Epetra_CrsMatrix &bulk = system.bulk.trilinos_matrix();
+    for (int r = 0; r < bulk.NumMyRows(); ++r)
+    {
+      int     n;
+      double *values;
+      int    *indices;
+      bulk.ExtractMyRowView(r, n, values, indices);
+      const int row = bulk.GRID(r);
+      for (int k = 0; k < n; ++k)
+        if (const int column = bulk.GCID(indices[k]); row <= column)
+          add(row, column, values[k]);
+    }
+    const TripletMatrix &contact = system.contact;
+    for (std::size_t k = 0; k < contact.value.size(); ++k)
+      if (contact.row[k] <= contact.column[k])
+        add(contact.row[k], contact.column[k], contact.value[k]);
+
+    if (n_entries != row_.size())
+    {
+      changed = true;
+      row_.resize(n_entries);
+      column_.resize(n_entries);
+      value_.resize(n_entries);
+    }
+    if (dealii::Utilities::MPI::max(finite ? 0 : 1, communicator_) != 0)
+      throw SolverFailure("Direct solver: the matrix holds a value that is not finite.");
+    return dealii::Utilities::MPI::max(changed ? 1 : 0, communicator_) != 0;
+  }
+
+  void DirectSolver::factorise(const bool pattern_changed)
+  {
+    if (!instance_)
+      instance_ = std::make_unique<Instance>(communicator_);
+    DMUMPS_STRUC_C &mumps = instance_->mumps;
+
+    mumps.n       = size_;
+    mumps.nnz_loc = static_cast<MUMPS_INT8>(row_.size());
+    mumps.irn_loc = row_.data();
+    mumps.jcn_loc = column_.data();
+    mumps.a_loc   = value_.data();
+
+    bool success = true;
+    if (pattern_changed || !instance_->analysed)
+    {
+      success             = instance_->run(1);
+      instance_->analysed = success;
+    }
+    if (success)
+    {
+      constexpr unsigned int max_attempts = 6;
+      success                             = instance_->run(2);
+      for (unsigned int i = 1; i < max_attempts && !success && asks_for_more_space(mumps); ++i)
+      {
+        icntl(mumps, 14) *= 2;
+        success = instance_->run(2);
+      }
+    }
+    if (!success)
+    {
+      const std::string message =
+          "Direct solver: MUMPS error " + std::to_string(infog(mumps, 1)) + ": " + meaning(mumps) + ".";
+      instance_.reset(); // gives the memory back; the next system starts afresh
+      throw SolverFailure(message);
+    }
+  }
+
+  void DirectSolver::apply_inverse(std::vector<double> &x)
+  {
+    DMUMPS_STRUC_C &mumps = instance_->mumps;
+    mumps.nrhs            = 1;
+    mumps.lrhs            = size_;
+    mumps.rhs             = x.data(); // only read and written on rank 0
+    if (!instance_->run(3))
+    {
+      const std::string message = "Direct solver: MUMPS error " + std::to_string(infog(mumps, 1)) +
+                                  " in the substitution: " + meaning(mumps) + ".";
+      instance_.reset();
+      throw SolverFailure(message);
+    }
+    MPI_Bcast(x.data(), size_, MPI_DOUBLE, 0, communicator_);
+  }
+
+  std::vector<double> DirectSolver::residual(const std::vector<double> &b, const std::vector<double> &x) const
+  {
+    std::vector<double> r(size_, 0.);
+    for (std::size_t k = 0; k < value_.size(); ++k)
+    {
+      const int i = row_[k] - 1, j = column_[k] - 1;
+      r[i] -= value_[k] * x[j];
+      if (i != j)
+        r[j] -= value_[k] * x[i];
+    }
+    dealii::Utilities::MPI::sum(r, communicator_, r);
+    for (int i = 0; i < size_; ++i)
+      r[i] += b[i];
+    return r;
+  }
+
+  LinearSolver::Report DirectSolver::solve(const LinearSystem &system, BlockVector &solution)
+  {
+    const BlockLayout &layout = *system.layout;
+    if (layout.size() >= static_cast<DoFIndex>(std::numeric_limits<int>::max()))
+      throw SolverFailure("Direct solver: too many unknowns for MUMPS, use 'Type = block'.");
+    const bool same_size = size_ == static_cast<int>(layout.size());
+    size_                = layout.size();
+
+    const std::vector<double> scale   = gather_scale(system);
+    const bool                changed = collect_entries(system, scale);
+    factorise(changed || !same_size);
+
+    // Multipliers follow u in the flat numbering, in the order of the blocks.
+    const std::array<DoFIndex, 3> offset = {{0, layout.n_u, layout.n_u + layout.n_slave_nodes}};
+    const auto scale_of = [&](const DoFIndex flat) { return flat < layout.n_u ? 1. : scale[flat - layout.n_u]; };
+
+    std::vector<double> b(size_, 0.);
+    for (unsigned int block = 0; block < 3; ++block)
+      for (const DoFIndex i : layout.owned[block])
+        b[offset[block] + i] = scale_of(offset[block] + i) * system.rhs.block(block)(i);
+    dealii::Utilities::MPI::sum(b, communicator_, b);
+    const double norm_b = norm(b);
+    if (!std::isfinite(norm_b))
+      throw SolverFailure("Direct solver: the right-hand side holds a value that is not finite.");
+
+    std::vector<double> x = b;
+    apply_inverse(x);
+
+    // Two steps of refinement at most, kept only where they help (they cannot on an inconsistent singular system).
+    std::vector<double> r = residual(b, x);
+    for (unsigned int step = 0; step < 2 && norm(r) > 1e-15 * norm_b; ++step)
+    {
+      std::vector<double> refined = r;
+      apply_inverse(refined);
+      for (int i = 0; i < size_; ++i)
+        refined[i] += x[i];
+      std::vector<double> refined_residual = residual(b, refined);
+      if (!(norm(refined_residual) < norm(r)))
+        break;
+      x.swap(refined);
+      r.swap(refined_residual);
+    }
+    if (!std::isfinite(norm(r)))
+      throw SolverFailure("Direct solver: the solution is not finite, the matrix is numerically singular.");
+
+    layout.reinit(solution);
+    for (unsigned int block = 0; block < 3; ++block)
+    {
+      for (const DoFIndex i : layout.owned[block])
+        solution.block(block)(i) = scale_of(offset[block] + i) * x[offset[block] + i];
+      solution.block(block).compress(dealii::VectorOperation::insert);
+    }
+
+    Report report;
+    for (int i = 0; i < size_; ++i) // back to the units of the caller
+    {
+      r[i] /= scale_of(i);
+      b[i] /= scale_of(i);
+    }
+    report.relative_residual = norm(r) / (norm_b > 0. ? norm(b) : 1.);
+
+    DMUMPS_STRUC_C &mumps  = instance_->mumps;
+    report.negative_pivots = infog(mumps, 12);
+    std::vector<int> null_pivots(infog(mumps, 28));
+    if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
+      std::copy_n(mumps.pivnul_list, null_pivots.size(), null_pivots.begin());
+    MPI_Bcast(null_pivots.data(), static_cast<int>(null_pivots.size()), MPI_INT, 0, communicator_);
+    for (const int i : null_pivots)
+      report.null_pivots.push_back(i - 1);
+    std::sort(report.null_pivots.begin(), report.null_pivots.end());
+    return report;
+  }
+} // namespace Nodus

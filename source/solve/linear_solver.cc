@@ -1,0 +1,20 @@
+#include <nodus/solve/block_solver.h>
+#include <nodus/solve/direct_solver.h>
+#include <nodus/solve/linear_solver.h>
+
+namespace Nodus
+{
+  void BlockLayout::reinit(BlockVector &v) const
+  {
+    v.reinit(std::vector<dealii::IndexSet>(owned.begin(), owned.end()), communicator);
+  }
+
+  std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverParameters &parameters,
+                                                   const BlockLayout            &layout,
+                                                   const RigidBodyData          &rigid_body_data)
+  {
+    if (parameters.type == LinearSolverParameters::Type::direct)
+      return std::make_unique<DirectSolver>(layout);
+    return std::make_unique<BlockSolver>(parameters, rigid_body_data);
+  }
+} // namespace Nodus

@@ -1,0 +1,251 @@
+#include <nodus/solve/saddle_point_operator.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/mpi.templates.h>
+
+#include <Epetra_Import.h>
+#include <Epetra_Map.h>
+#include <Epetra_Vector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace Nodus
+{
+  Ownership::Ownership(const dealii::IndexSet &owned, const MPI_Comm communicator)
+      : start_(1, 0)
+      , communicator_(communicator)
+  {
+    if (!owned.is_ascending_and_one_to_one(communicator))
+      throw SolverFailure("Block solver: each rank must own one range of unknowns, in the order of the ranks.");
+    for (const DoFIndex n : dealii::Utilities::MPI::all_gather(communicator, owned.n_elements()))
+      start_.push_back(start_.back() + n);
+  }
+
+  unsigned int Ownership::owner(const DoFIndex i) const
+  {
+    return std::upper_bound(start_.begin(), start_.end(), i) - start_.begin() - 1;
+  }
+
+  Ownership Ownership::times(const unsigned int factor) const
+  {
+    Ownership result(*this);
+    for (DoFIndex &i : result.start_)
+      i *= factor;
+    return result;
+  }
+
+  dealii::IndexSet Ownership::owned() const
+  {
+    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(communicator_);
+    dealii::IndexSet   result(start_.back());
+    result.add_range(start_[rank], start_[rank + 1]);
+    return result;
+  }
+
+  std::vector<MatrixEntry> Ownership::exchange(std::vector<MatrixEntry> entries) const
+  {
+    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(communicator_);
+    const auto         first =
+        std::partition(entries.begin(),
+                       entries.end(),
+                       [&](const MatrixEntry &e) { return e.row >= start_[rank] && e.row < start_[rank + 1]; });
+    std::map<unsigned int, std::vector<MatrixEntry>> outgoing;
+    for (auto e = first; e != entries.end(); ++e)
+      outgoing[owner(e->row)].push_back(*e);
+    entries.erase(first, entries.end());
+    for (const auto &[source, received] : dealii::Utilities::MPI::some_to_some(communicator_, outgoing))
+      entries.insert(entries.end(), received.begin(), received.end());
+
+    std::sort(entries.begin(),
+              entries.end(),
+              [](const MatrixEntry &a, const MatrixEntry &b)
+              { return a.row != b.row ? a.row < b.row : a.column < b.column; });
+    std::size_t n = 0;
+    for (const MatrixEntry &e : entries)
+      if (n > 0 && entries[n - 1].row == e.row && entries[n - 1].column == e.column)
+        entries[n - 1].value += e.value;
+      else
+        entries[n++] = e;
+    entries.resize(n);
+    return entries;
+  }
+
+  std::unique_ptr<Epetra_CrsMatrix>
+  make_matrix(const std::vector<MatrixEntry> &entries, const Epetra_Map &range, const Epetra_Map &domain)
+  {
+    std::vector<int>    length(std::max(1, range.NumMyElements()), 0), columns(entries.size());
+    std::vector<double> values(entries.size());
+    for (std::size_t k = 0; k < entries.size(); ++k)
+    {
+      ++length[range.LID(static_cast<int>(entries[k].row))];
+      columns[k] = entries[k].column;
+      values[k]  = entries[k].value;
+    }
+    auto        matrix = std::make_unique<Epetra_CrsMatrix>(Copy, range, length.data(), true);
+    std::size_t k      = 0;
+    while (k < entries.size())
+    {
+      const int row = entries[k].row, n = length[range.LID(row)];
+      matrix->InsertGlobalValues(row, n, values.data() + k, columns.data() + k);
+      k += n;
+    }
+    matrix->FillComplete(domain, range);
+    return matrix;
+  }
+
+  SaddlePointOperator::SaddlePointOperator(const LinearSystem &system)
+      : system_(system)
+      , u_ownership_(system.layout->owned[0], system.layout->communicator)
+      , m_ownership_(Ownership(system.layout->owned[1], system.layout->communicator).times(3))
+      , owned_m_(m_ownership_.owned())
+  {
+    const BlockLayout &layout = *system.layout;
+    const DoFIndex     n_u = layout.n_u, n_nodes = layout.n_slave_nodes;
+    const auto         to_m = [=](const DoFIndex flat)
+    {
+      const DoFIndex i = flat - n_u;
+      return i < n_nodes ? 3 * i : 3 * ((i - n_nodes) / 2) + 1 + (i - n_nodes) % 2;
+    };
+
+    std::vector<MatrixEntry> uu, B, C;
+    const TripletMatrix     &contact = system.contact;
+    for (std::size_t k = 0; k < contact.value.size(); ++k)
+    {
+      const DoFIndex i = contact.row[k], j = contact.column[k];
+      const double   v = contact.value[k];
+      if (i < n_u && j < n_u)
+        uu.push_back({i, j, v});
+      else if (i >= n_u && j < n_u)
+        B.push_back({to_m(i), j, v});
+      else if (i >= n_u && j >= n_u)
+        C.push_back({to_m(i), to_m(j), -v});
+    }
+
+    const Epetra_Map &u_map = static_cast<const Epetra_Map &>(bulk().RowMap());
+    const Epetra_Map  m_map = owned_m_.make_trilinos_map(layout.communicator, false);
+    uu_entries_             = u_ownership_.exchange(std::move(uu));
+    B_                      = make_matrix(m_ownership_.exchange(std::move(B)), m_map, u_map);
+    C_                      = make_matrix(m_ownership_.exchange(std::move(C)), m_map, m_map);
+    if (dealii::Utilities::MPI::max(uu_entries_.empty() ? 0 : 1, layout.communicator) != 0)
+      C_uu_ = make_matrix(uu_entries_, u_map, u_map);
+    equilibrate();
+  }
+
+  void SaddlePointOperator::equilibrate()
+  {
+    const Epetra_Map &u_map = static_cast<const Epetra_Map &>(bulk().RowMap());
+    Epetra_Vector     diagonal(u_map), part(u_map);
+    bulk().ExtractDiagonalCopy(diagonal);
+    if (C_uu_)
+    {
+      C_uu_->ExtractDiagonalCopy(part);
+      diagonal.Update(1., part, 1.);
+    }
+    double mean;
+    diagonal.Norm1(&mean);
+    mean /= u_map.NumGlobalElements();
+    // An indefinite tangent may hold diagonal entries that are negative or nearly vanish.
+    for (int i = 0; i < u_map.NumMyElements(); ++i)
+      diagonal[i] = std::max(std::abs(diagonal[i]), 1e-12 * mean);
+
+    Epetra_Vector       column_diagonal(B_->ColMap());
+    const Epetra_Import import(B_->ColMap(), u_map);
+    column_diagonal.Import(diagonal, import, Insert);
+
+    const int     n = B_->NumMyRows();
+    Epetra_Vector scale(B_->RowMap()), C_diagonal(B_->RowMap());
+    C_->ExtractDiagonalCopy(C_diagonal);
+    scale_.assign(n, 1.);
+    stiffness_.assign(n, 0.);
+    for (int i = 0; i < n; ++i)
+    {
+      int     length;
+      double *values;
+      int    *columns;
+      B_->ExtractMyRowView(i, length, values, columns);
+      double square = 0., compliance = 0.;
+      for (int k = 0; k < length; ++k)
+      {
+        square += values[k] * values[k];
+        compliance += values[k] * values[k] / column_diagonal[columns[k]];
+      }
+      const double c = std::abs(C_diagonal[i]);
+      if (square > 0.)
+      {
+        stiffness_[i] = square / compliance;
+        scale_[i]     = std::sqrt(square) / compliance;
+        if (c > 0.) // a slip row may have next to no coupling: then C sets the scale
+          scale_[i] = std::min(scale_[i], std::sqrt(stiffness_[i] / c));
+      }
+      else if (c > 0.)
+        scale_[i] = std::sqrt(mean / c);
+      scale[i] = scale_[i];
+    }
+    B_->LeftScale(scale);
+    C_->LeftScale(scale);
+    C_->RightScale(scale);
+  }
+
+  void SaddlePointOperator::vmult(BlockVector &dst, const BlockVector &src) const
+  {
+    const Epetra_MultiVector &u = src.block(0).trilinos_vector(), &m = src.block(1).trilinos_vector();
+    Epetra_MultiVector       &f = dst.block(0).trilinos_vector(), &g = dst.block(1).trilinos_vector();
+    Epetra_MultiVector        part(f.Map(), 1, false);
+
+    bulk().Multiply(false, u, f);
+    if (C_uu_)
+    {
+      C_uu_->Multiply(false, u, part);
+      f.Update(1., part, 1.);
+    }
+    B_->Multiply(true, m, part);
+    f.Update(1., part, 1.);
+
+    Epetra_MultiVector m_part(g.Map(), 1, false);
+    B_->Multiply(false, u, g);
+    C_->Multiply(false, m, m_part);
+    g.Update(-1., m_part, 1.);
+  }
+
+  BlockVector SaddlePointOperator::rhs() const
+  {
+    BlockVector b(std::vector<dealii::IndexSet>{system_.layout->owned[0], owned_m_}, system_.layout->communicator);
+    b.block(0)                           = system_.rhs.block(0);
+    Epetra_MultiVector       &m          = b.block(1).trilinos_vector();
+    const Epetra_MultiVector &normal     = system_.rhs.block(1).trilinos_vector();
+    const Epetra_MultiVector &tangential = system_.rhs.block(2).trilinos_vector();
+    for (int k = 0; k < normal.MyLength(); ++k)
+    {
+      m[0][3 * k]     = scale_[3 * k] * normal[0][k];
+      m[0][3 * k + 1] = scale_[3 * k + 1] * tangential[0][2 * k];
+      m[0][3 * k + 2] = scale_[3 * k + 2] * tangential[0][2 * k + 1];
+    }
+    return b;
+  }
+
+  void SaddlePointOperator::to_solution(const BlockVector &x, BlockVector &solution) const
+  {
+    system_.layout->reinit(solution);
+    solution.block(0)                    = x.block(0);
+    const Epetra_MultiVector &m          = x.block(1).trilinos_vector();
+    Epetra_MultiVector       &normal     = solution.block(1).trilinos_vector();
+    Epetra_MultiVector       &tangential = solution.block(2).trilinos_vector();
+    for (int k = 0; k < normal.MyLength(); ++k)
+    {
+      normal[0][k]             = scale_[3 * k] * m[0][3 * k];
+      tangential[0][2 * k]     = scale_[3 * k + 1] * m[0][3 * k + 1];
+      tangential[0][2 * k + 1] = scale_[3 * k + 2] * m[0][3 * k + 2];
+    }
+  }
+
+  double SaddlePointOperator::unscaled_norm(const BlockVector &residual) const
+  {
+    const Epetra_MultiVector &m   = residual.block(1).trilinos_vector();
+    double                    sum = 0.;
+    for (int i = 0; i < m.MyLength(); ++i)
+      sum += (m[0][i] / scale_[i]) * (m[0][i] / scale_[i]);
+    return std::sqrt(dealii::Utilities::MPI::sum(sum, system_.layout->communicator) + residual.block(0).norm_sqr());
+  }
+} // namespace Nodus

@@ -1,0 +1,174 @@
+// Each law: S is the derivative of the energy, C that of S, both are objective, and the initial moduli are those of
+// linear elasticity; closed-form stresses.
+
+#include <nodus/bulk/material.h>
+
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+
+using namespace dealii;
+using Nodus::dim;
+using Law = Nodus::MaterialParameters::Law;
+
+namespace
+{
+  const double E = 3., nu = 0.3, lambda = E * nu / ((1. + nu) * (1. - 2. * nu)), mu = E / (2. * (1. + nu));
+
+  std::unique_ptr<Nodus::Material> make(const Law law)
+  {
+    Nodus::MaterialParameters parameters;
+    parameters.law                 = law;
+    parameters.youngs_modulus      = E;
+    parameters.poissons_ratio      = nu;
+    parameters.mooney_rivlin_ratio = 0.4;
+    return Nodus::make_material(parameters);
+  }
+
+  Tensor<2, dim> deformation(const unsigned int n)
+  {
+    // stretch, squeeze and shear, with rotation
+    const double   values[3][9] = {{1.1, 0.2, -0.1, 0.05, 0.9, 0.3, 0., -0.2, 1.2},
+                                   {0.6, 0., 0.1, 0., 1.5, 0., 0.2, 0., 0.8},
+                                   {0.1, -1.2, 0.3, 1.3, 0.2, 0., 0.1, 0.3, 0.7}};
+    Tensor<2, dim> F;
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int j = 0; j < dim; ++j)
+        F[i][j] = values[n][3 * i + j];
+    return F;
+  }
+
+  Tensor<2, dim> unit(const unsigned int i, const unsigned int j)
+  {
+    Tensor<2, dim> result;
+    result[i][j] = 1.;
+    return result;
+  }
+
+  Tensor<2, dim> rotation()
+  {
+    const double   c = std::cos(0.7), s = std::sin(0.7);
+    Tensor<2, dim> about_x, about_z;
+    about_x[0][0] = about_z[2][2] = 1.;
+    about_x[1][1] = about_x[2][2] = about_z[0][0] = about_z[1][1] = c;
+    about_x[1][2] = about_z[0][1] = -s;
+    about_x[2][1] = about_z[1][0] = s;
+    return about_x * about_z;
+  }
+
+  void check(const std::string &what, const double error, const double tolerance)
+  {
+    std::cout << "  " << what << ' ' << tolerance << ": " << (error < tolerance ? "yes" : "NO") << std::endl;
+    if (!(error < tolerance))
+      std::cout << "    error " << error << std::endl;
+  }
+
+  void run(const std::string &name, const Law law)
+  {
+    const auto   material = make(law);
+    const bool   small    = material->small_strain();
+    const double h        = 1e-5;
+    std::cout << name << std::endl;
+
+    double stress_error = 0., tangent_error = 0., symmetry_error = 0., rotation_error = 0.;
+    for (unsigned int n = 0; n < 3; ++n)
+    {
+      const auto              F = deformation(n);
+      SymmetricTensor<2, dim> S, S_plus, S_minus;
+      SymmetricTensor<4, dim> C;
+      material->evaluate(F, S, &C);
+      const Tensor<2, dim> P = small ? Tensor<2, dim>(S) : F * Tensor<2, dim>(S);
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+        {
+          const auto   dF = unit(i, j);
+          const double dW = (material->energy(F + h * dF) - material->energy(F - h * dF)) / (2. * h);
+          stress_error    = std::max(stress_error, std::abs(dW - P[i][j]));
+
+          material->evaluate(F + h * dF, S_plus, nullptr);
+          material->evaluate(F - h * dF, S_minus, nullptr);
+          const auto strain = symmetrize(small ? dF : transpose(F) * dF);
+          const auto dS     = C * strain;
+          tangent_error     = std::max(tangent_error, ((S_plus - S_minus) / (2. * h) - dS).norm() / C.norm());
+        }
+      for (unsigned int r = 0; r < 6; ++r)
+        for (unsigned int c = 0; c < 6; ++c)
+          symmetry_error =
+              std::max(symmetry_error, std::abs(C.access_raw_entry(6 * r + c) - C.access_raw_entry(6 * c + r)));
+      if (!small)
+      {
+        material->evaluate(rotation() * F, S_plus, nullptr);
+        rotation_error = std::max(rotation_error, (S_plus - S).norm() / S.norm());
+      }
+    }
+    check("stress = dW/dF within", stress_error, 1e-8);
+    check("tangent = dS/dE within", tangent_error, 1e-8);
+    check("tangent symmetric within", symmetry_error, 1e-13);
+    if (!small)
+      check("stress unchanged by rotation within", rotation_error, 1e-13);
+
+    SymmetricTensor<2, dim> S;
+    SymmetricTensor<4, dim> C;
+    const auto              I = unit_symmetric_tensor<dim>();
+    material->evaluate(I, S, &C);
+    const auto hooke = lambda * outer_product(I, I) + 2. * mu * identity_tensor<dim>();
+    check("stress and energy at rest within", S.norm() + std::abs(material->energy(I)), 1e-13);
+    check("initial tangent Hooke's within", (C - hooke).norm() / hooke.norm(), 1e-13);
+    check("initial modulus E within", std::abs(material->youngs_modulus() - E), 1e-13);
+  }
+
+  void closed_forms()
+  {
+    // uniform stretch s and simple shear gamma, Cauchy stress
+    const double   s = 0.8, J = s * s * s, gamma = 0.5;
+    Tensor<2, dim> stretch, shear;
+    for (unsigned int i = 0; i < dim; ++i)
+    {
+      stretch[i][i] = s;
+      shear[i][i]   = 1.;
+    }
+    shear[0][1] = gamma;
+
+    std::cout << "Cauchy stress, stretch 0.8: computed, expected" << std::endl;
+    const double green = (s * s - 1.) / 2.;
+    std::cout << "  linear elastic       " << make(Law::linear_elastic)->cauchy_stress(stretch)[1][1] << ' '
+              << (3. * lambda + 2. * mu) * (s - 1.) << std::endl;
+    std::cout << "  St Venant-Kirchhoff  " << make(Law::st_venant_kirchhoff)->cauchy_stress(stretch)[1][1] << ' '
+              << (3. * lambda + 2. * mu) * green / s << std::endl;
+    std::cout << "  neo-Hookean          " << make(Law::neo_hookean)->cauchy_stress(stretch)[1][1] << ' '
+              << (mu * (s * s - 1.) + lambda * std::log(J)) / J << std::endl;
+    std::cout << "  Mooney-Rivlin        " << make(Law::mooney_rivlin)->cauchy_stress(stretch)[1][1] << ' '
+              << (lambda + 2. / 3. * mu) * (J - 1.) << std::endl;
+    std::cout << "Cauchy shear stress, simple shear 0.5: computed, expected" << std::endl;
+    std::cout << "  neo-Hookean          " << make(Law::neo_hookean)->cauchy_stress(shear)[0][1] << ' ' << mu * gamma
+              << std::endl;
+    std::cout << "  Mooney-Rivlin        " << make(Law::mooney_rivlin)->cauchy_stress(shear)[0][1] << ' ' << mu * gamma
+              << std::endl;
+    // N1 = sigma_xx - sigma_yy = mu gamma^2, N2 = sigma_yy - sigma_zz = -2 c01 gamma^2
+    const auto sigma = make(Law::mooney_rivlin)->cauchy_stress(shear);
+    std::cout << "Normal stress differences of Mooney-Rivlin: computed, expected" << std::endl;
+    std::cout << "  N1 " << sigma[0][0] - sigma[1][1] << ' ' << mu * gamma * gamma << std::endl;
+    std::cout << "  N2 " << sigma[1][1] - sigma[2][2] << ' ' << -mu * 0.4 / 1.4 * gamma * gamma << std::endl;
+  }
+} // namespace
+
+int main()
+{
+  run("linear elastic", Law::linear_elastic);
+  run("St Venant-Kirchhoff", Law::st_venant_kirchhoff);
+  run("neo-Hookean", Law::neo_hookean);
+  run("Mooney-Rivlin", Law::mooney_rivlin);
+  std::cout << std::setprecision(5);
+  closed_forms();
+  try
+  {
+    Nodus::MaterialParameters incompressible;
+    incompressible.poissons_ratio = 0.5;
+    Nodus::make_material(incompressible);
+    std::cout << "nu = 0.5 accepted: NO" << std::endl;
+  }
+  catch (const Nodus::InputError &error)
+  {
+    std::cout << error.what() << std::endl;
+  }
+}
