@@ -1,19 +1,19 @@
 // Hertz contact: a quarter of the lower half of a sphere of radius 8 on a quarter of a block, pole at the origin.
 // Both are graded to the contact point: a box of n x n x n cells around it and three blocks that grow outwards by a
-// constant ratio. The contact radius at an approach of 0.005 is a = 0.2; cells there are 0.023 (sphere), 0.025 (block).
+// constant ratio. The contact radius at an approach of 0.005 is a = 0.2; the sphere's cells there are 0.023. The block is
+// meant to be refined once by nodus (Global refinement = 1; it has no curved face to lose), its cells are 0.025 then.
 //
 // Volumes:  1 sphere, 2 block
 // Surfaces: 11 sphere, x = 0     12 sphere, y = 0     13 sphere, flat top z = 8    14 sphere, curved (slave)
 //           21 block, x = 0      22 block, y = 0      23 block, bottom             24 block, top z = 0 (master)
-//           25 block, x = 12 and y = 12
+//           25 block, x = 16 and y = 16
 
 R = 8;   // radius of the sphere
-L = 12;  // edge of the block, 60 a
-n = 10;  // cells across the box
-m = 16;  // cells from the box outwards
+L = 16;  // edge of the block, 80 a
 
 // Corners p[] of one body: 0-3 contact face of the box, 4-7 its far face, 8-10 rim, 11-14 far side. Curves that touch
-// the contact surface are arcs about point `centre` unless that is zero. Makes curves, surfaces s[] and volumes v[]:
+// the contact surface are arcs about point `centre` unless that is zero. There are n cells across the box
+// and m, each q times as long as the one before, from the box outwards. Makes surfaces s[] and volumes v[]:
 // s[0-2] contact side (box, x block, y block), s[3-5] y = 0, s[6-8] x = 0, s[9-11] far side and ends.
 Macro Octant
   For i In {0:3}
@@ -89,7 +89,9 @@ Return
 b      = 0.23;
 d      = 0.85 * b;
 e      = 0.75 * b;
-q      = 1.365;
+n      = 10;
+m      = 22;
+q      = 1.232;
 centre = newp; Point(centre) = {0, 0, R};
 p[0]   = newp; Point(p[0])   = {0, 0, 0};
 p[1]   = newp; Point(p[1])   = {b, 0, R - Sqrt(R * R - b * b)};
@@ -117,7 +119,9 @@ Physical Surface(14) = {s[{0:2}]};
 b      = 0.25;
 d      = 0.85 * b;
 e      = 0.75 * b;
-q      = 1.36;
+n      = 5;
+m      = 11;
+q      = 1.573;
 centre = 0;
 p[0]   = newp; Point(p[0])   = {0, 0, 0};
 p[1]   = newp; Point(p[1])   = {b, 0, 0};

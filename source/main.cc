@@ -8,6 +8,7 @@
 #include <dmumps_c.h>
 
 #include <iostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -81,6 +82,16 @@ namespace
     return option == "--version" ? versions() : usage;
   }
 
+  /// Messages of libraries bring their own line breaks; ours are one line each.
+  std::string one_line(const std::string &text)
+  {
+    std::istringstream words(text);
+    std::string        line;
+    for (std::string word; words >> word;)
+      line += (line.empty() ? "" : " ") + word;
+    return line;
+  }
+
   /// Errors after the file was read do not know its name.
   void solve(const Nodus::Parameters &parameters, const bool validate)
   {
@@ -120,7 +131,7 @@ int main(int argc, char **argv)
   catch (const Nodus::InputError &error)
   {
     if (first_rank)
-      std::cerr << "nodus: input error: " << error.what() << std::endl;
+      std::cerr << "nodus: input error: " << one_line(error.what()) << std::endl;
     return 1;
   }
   catch (const Nodus::SolverFailure &error)

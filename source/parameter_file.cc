@@ -4,6 +4,7 @@
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/utilities.h>
 
+#define BOOST_BIND_GLOBAL_PLACEHOLDERS // silences a remark of boost 1.74 about its own JSON reader
 #include <boost/property_tree/json_parser.hpp>
 #include <boost/property_tree/ptree.hpp>
 
@@ -164,7 +165,8 @@ namespace Nodus
         read_statement(line, origin, section);
     }
     if (!section.empty())
-      throw InputError(sections_[section] + ": 'subsection " + last_name(section) + "' has no 'end'");
+      throw InputError(sections_[section] + ": 'subsection " + last_name(section) +
+                       "' has no 'end'; add it after the last line of the subsection");
   }
 
   void ParameterFile::read_statement(const std::string &line, const std::string &origin, std::string &section)
@@ -201,8 +203,8 @@ namespace Nodus
   {
     for (const auto &other : entries_)
       if (other.section == entry.section && other.key == entry.key)
-        throw InputError(entry.origin + ": '" + entry.key + "' " + in_section(entry.section) + " is already set at " +
-                         other.origin + "; remove one of the two");
+        throw InputError(entry.origin + ": '" + entry.key + "' " + in_section(entry.section) + " is already set (" +
+                         other.origin + "); remove one of the two");
     entries_.push_back(entry);
   }
 

@@ -223,7 +223,7 @@ namespace Nodus
     void add(ParameterHandler &prm, ContactPairParameters &pair)
     {
       const std::string where = "It is asked at the centres of the faces.";
-      prm.add_parameter("Name", pair.name, "Name in tables and messages [-].", Patterns::Anything());
+      prm.add_parameter("Name", pair.name, "Name in tables and messages [-]; empty: pair <n>.", Patterns::Anything());
       add_region(prm, "Slave ", pair.slave, " that carries the contact pressures", where);
       add_region(prm, "Master ", pair.master, " that the slave nodes are projected onto", where);
       prm.add_parameter("Friction coefficient",
@@ -349,14 +349,6 @@ namespace Nodus
       for (unsigned int i = 0; i < all.size(); ++i)
         add_subsection(prm, name + ' ' + std::to_string(i + 1), all[i]);
     }
-
-    template <typename Struct>
-    void name_the_nameless(std::vector<Struct> &all, const std::string &name)
-    {
-      for (unsigned int i = 0; i < all.size(); ++i)
-        if (all[i].name.empty())
-          all[i].name = name + ' ' + std::to_string(i + 1);
-    }
   } // namespace
 
   void Parameters::add_parameters(ParameterHandler &prm)
@@ -394,18 +386,21 @@ namespace Nodus
     parameters.add_parameters(prm);
     text.apply_to(prm);
 
-    const auto folder = std::filesystem::path(file).parent_path();
+    const std::filesystem::path path(file);
     for (auto &body : parameters.bodies)
       if (!body.mesh_file.empty())
-        body.mesh_file = (folder / body.mesh_file).lexically_normal().string();
+        body.mesh_file = (path.parent_path() / body.mesh_file).lexically_normal().string();
     for (auto &condition : parameters.boundary_conditions)
       if (condition.value.size() == 1 && condition.components.size() > 1)
         condition.value.resize(condition.components.size(), std::string(condition.value[0]));
 
+    for (unsigned int p = 0; p < parameters.contact_pairs.size(); ++p)
+      if (parameters.contact_pairs[p].name.empty())
+        parameters.contact_pairs[p].name = "pair " + std::to_string(p + 1);
+    if (parameters.output.results_folder.empty())
+      parameters.output.results_folder = (std::filesystem::path("results") / path.stem()).string();
+
     parameters.check(text);
-    name_the_nameless(parameters.bodies, "body");
-    name_the_nameless(parameters.boundary_conditions, "boundary condition");
-    name_the_nameless(parameters.contact_pairs, "contact pair");
     return parameters;
   }
 } // namespace Nodus

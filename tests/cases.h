@@ -29,16 +29,19 @@ namespace Cases
     z_plus
   };
 
-  inline std::string
-  text(const Point &p)
+  inline std::string text(const Point &p)
   {
     std::ostringstream s;
     s << std::setprecision(16) << p[0] << "," << p[1] << "," << p[2];
     return s.str();
   }
 
-  inline BodyParameters
-  box(const std::string &name, const std::string &cells, const Point &lower, const Point &upper, const double E, const double nu)
+  inline BodyParameters box(const std::string &name,
+                            const std::string &cells,
+                            const Point       &lower,
+                            const Point       &upper,
+                            const double       E,
+                            const double       nu)
   {
     BodyParameters body;
     body.name                    = name;
@@ -60,12 +63,11 @@ namespace Cases
     return r;
   }
 
-  inline BoundaryConditionParameters
-  condition(const std::string                      &name,
-            const BoundaryConditionParameters::Type type,
-            const RegionParameters                 &where,
-            const std::vector<unsigned int>        &components,
-            const std::vector<std::string>         &value)
+  inline BoundaryConditionParameters condition(const std::string                      &name,
+                                               const BoundaryConditionParameters::Type type,
+                                               const RegionParameters                 &where,
+                                               const std::vector<unsigned int>        &components,
+                                               const std::vector<std::string>         &value)
   {
     BoundaryConditionParameters c;
     c.name       = name;
@@ -79,7 +81,11 @@ namespace Cases
   inline BoundaryConditionParameters
   hold(const std::string &name, const RegionParameters &where, const std::vector<unsigned int> &components)
   {
-    return condition(name, BoundaryConditionParameters::Type::displacement, where, components, std::vector<std::string>(components.size(), "0"));
+    return condition(name,
+                     BoundaryConditionParameters::Type::displacement,
+                     where,
+                     components,
+                     std::vector<std::string>(components.size(), "0"));
   }
 
   inline BoundaryConditionParameters
@@ -106,20 +112,17 @@ namespace Cases
   }
 
   /// Runs with results in a folder named after the test; the log is dropped unless the environment asks for it.
-  inline MPI_Comm
-  world()
+  inline MPI_Comm world()
   {
     return MPI_COMM_WORLD;
   }
-  inline std::ostream &
-  log()
+  inline std::ostream &log()
   {
     static std::ostringstream dropped;
     return std::getenv("NODUS_TEST_LOG") != nullptr ? std::cout : dropped;
   }
 
-  inline bool
-  root()
+  inline bool root()
   {
     int rank;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -127,8 +130,11 @@ namespace Cases
   }
 
   /// Prints "ok" or the deviation: @p value against @p reference, relative to @p scale (the reference itself when 0).
-  inline void
-  check(const std::string &what, const double value, const double reference, const double tolerance, const double scale = 0.)
+  inline void check(const std::string &what,
+                    const double       value,
+                    const double       reference,
+                    const double       tolerance,
+                    const double       scale = 0.)
   {
     const double deviation = std::abs(value - reference) / (scale > 0. ? scale : std::abs(reference));
     if (!root())
@@ -142,16 +148,14 @@ namespace Cases
       std::cout << "NO, value " << std::setprecision(10) << value << ", deviation " << deviation << std::endl;
   }
 
-  inline void
-  check(const std::string &what, const bool holds)
+  inline void check(const std::string &what, const bool holds)
   {
     if (root())
       std::cout << what << ": " << (holds ? "yes" : "NO") << std::endl;
   }
 
   /// Index of the slave node of a pair at a reference position.
-  inline unsigned int
-  node_at(const ContactFields &fields, const Point &X)
+  inline unsigned int node_at(const ContactFields &fields, const Point &X)
   {
     for (unsigned int k = 0; k < fields.X.size(); ++k)
       if (fields.X[k].distance(X) < 1e-9 * (1. + X.norm()))

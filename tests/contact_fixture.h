@@ -20,15 +20,15 @@ struct ContactFixture
   ContactFixture(const std::vector<Nodus::BodyParameters>        &body_parameters,
                  const std::vector<Nodus::ContactPairParameters> &pair_parameters,
                  const unsigned int                               degree)
-    : pairs(pair_parameters)
-    , bodies(body_parameters, MPI_COMM_WORLD)
-    , mapping(degree)
-    , fe(dealii::FE_Q<3>(degree), 3)
-    , dof_handler(bodies.triangulation())
+      : pairs(pair_parameters)
+      , bodies(body_parameters, MPI_COMM_WORLD)
+      , mapping(degree)
+      , fe(dealii::FE_Q<3>(degree), 3)
+      , dof_handler(bodies.triangulation())
   {
     dof_handler.distribute_dofs(fe);
-    surfaces  = std::make_unique<Nodus::ContactSurfaces>(pairs, bodies, dof_handler, mapping);
-    status    = std::make_unique<Nodus::Status>(pairs, *surfaces, std::vector<double>(pairs.size(), normal_augmentation));
+    surfaces = std::make_unique<Nodus::ContactSurfaces>(pairs, bodies, dof_handler, mapping);
+    status = std::make_unique<Nodus::Status>(pairs, *surfaces, std::vector<double>(pairs.size(), normal_augmentation));
     assembler = std::make_unique<Nodus::ContactAssembler>(*surfaces, pairing, jump, weights, *status);
 
     const std::vector<Nodus::Vector3> zero(surfaces->nodes().size());

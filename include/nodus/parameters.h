@@ -109,7 +109,7 @@ namespace Nodus
     RegionParameters master; ///< keys "Master body", ...
     double           friction_coefficient           = 0.;
     double           normal_augmentation_factor     = 1.; ///< times E/h gives rho_n
-    double           tangential_augmentation_factor = 1.; ///< times rho_n/|mu lambda_s| gives rho_tau
+    double           tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
     SurfaceMeasure   surface_measure                = SurfaceMeasure::current;
     Weights          weights                        = Weights::nodal_quadrature;
     Normal           normal                         = Normal::master_facet;

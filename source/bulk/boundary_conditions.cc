@@ -206,7 +206,7 @@ namespace Nodus
     {
       const auto  new_one = held.insert({dof, {X, n, e}});
       const Held &first   = new_one.first->second;
-      if (!new_one.second && first.condition == n && first.entry == e)
+      if (!error.empty() || (!new_one.second && first.condition == n && first.entry == e))
         return;
       const auto values   = history(*functions_[n], X, e, end_time);
       const auto position = at(X, parameters_[n].components[e]);

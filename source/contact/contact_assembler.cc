@@ -30,12 +30,12 @@ namespace Nodus
       double  distance;
     };
 
-    /// pi(w) = w/|w| and its derivative K_B (eq. 48); inside the unit ball's tip, where the direction is lost, pi(w) =
-    /// w.
+    /// pi(w) = w/|w| and its derivative K_B (eq. 48). Inside the unit ball a slip node contradicts its status; there the
+    /// projection pi(w) = w takes over (K_B = I, the stick rows), because forced slip may have no solution.
     void direction(const Column3 &w, Column3 &pi, Matrix3 &K_B)
     {
       const double norm = w.norm();
-      if (norm < 1e-12)
+      if (norm < 1.)
       {
         pi  = w;
         K_B = Matrix3::Identity();

@@ -98,6 +98,7 @@ namespace Nodus
   void Status::begin_loop()
   {
     visited_.clear();
+    one_at_a_time_ = false;
   }
 
   Status::Update Status::update(const StatusInput &input)
@@ -146,18 +147,23 @@ namespace Nodus
       {
         ++n_changes_[k];
         result.slaves.push_back(k);
+        if (one_at_a_time_)
+          break;
       }
     }
     result.changes = result.slaves.size();
-    if (result.changes > 0)
+    if (result.changes == 0)
+      return result;
+
+    visited_.push_back(code());
+    for (unsigned int back = 1; back < visited_.size() && result.period == 0; ++back)
+      if (visited_[visited_.size() - 1 - back] == visited_.back())
+        result.period = back;
+    if (result.period > 0)
     {
-      visited_.push_back(code());
-      for (unsigned int back = 1; back < visited_.size(); ++back)
-        if (visited_[visited_.size() - 1 - back] == visited_.back())
-        {
-          result.period = back;
-          break;
-        }
+      result.cycles  = one_at_a_time_;
+      one_at_a_time_ = true;
+      visited_.assign(1, code());
     }
     return result;
   }

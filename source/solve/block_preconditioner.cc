@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace Nodus
 {
@@ -36,7 +37,7 @@ namespace Nodus
     D_inverse_.resize(C.NumMyRows() / 3);
     for (unsigned int node = 0; node < D_inverse_.size(); ++node)
     {
-      Block D = Block::Zero();
+      Block C_node = Block::Zero(), regularisation = Block::Zero();
       for (unsigned int a = 0; a < 3; ++a)
       {
         const int row = 3 * node + a;
@@ -46,11 +47,15 @@ namespace Nodus
         C.ExtractMyRowView(row, length, values, columns);
         for (int k = 0; k < length; ++k)
           if (const int b = C.GCID(columns[k]) - C.GRID(3 * node); b >= 0 && b < 3)
-            D(a, b) += values[k];
-        D(a, a) += system_.stiffness()[row] / augmentation_factor;
-        if (D.row(a).isZero(0.)) // neither coupled nor regularised: a void multiplier
-          D(a, a) = 1.;
+            C_node(a, b) += values[k];
+        regularisation(a, a) = system_.stiffness()[row] / augmentation_factor;
+        if (regularisation(a, a) == 0. && C_node.row(a).isZero(0.)) // a void multiplier
+          regularisation(a, a) = 1.;
       }
+      // A slipping node that Newton moves back inside its threshold has a negative C, of which D must stay clear.
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(C_node);
+      const Eigen::Matrix3d D = regularisation + eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.).asDiagonal() *
+                                                     eigen.eigenvectors().transpose();
       Eigen::Map<Block>(D_inverse_[node].data()) = D.inverse();
     }
   }
@@ -208,7 +213,7 @@ namespace Nodus
     using AMG = dealii::TrilinosWrappers::PreconditionAMG;
     AMG::AdditionalData data;
     data.elliptic              = true;
-    data.smoother_sweeps       = 2;
+    data.smoother_sweeps       = 3; // pays off against the stiff couplings of the augmentation
     data.aggregation_threshold = 0.;
     Teuchos::ParameterList              parameters;
     std::unique_ptr<Epetra_MultiVector> unused;

@@ -36,7 +36,7 @@ namespace Nodus
         std::ostringstream message;
         message << "Block solver: relative residual " << residual / norm_b << " after " << report.iterations
                 << " iterations (wanted: " << parameters_.tolerance
-                << "); use 'Type = direct' or raise 'Augmentation factor'.";
+                << "); use 'Type = direct' or change 'Augmentation factor' (good values lie between 1 and 10).";
         throw SolverFailure(message.str());
       };
 

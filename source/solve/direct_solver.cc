@@ -108,7 +108,7 @@ namespace Nodus
       icntl(mumps, 14) = 30;               // per cent of working space above the estimate
       icntl(mumps, 18) = 3;                // distributed entries
       icntl(mumps, 24) = 1;                // null pivots are found, fixed and listed
-      mumps.cntl[2]    = 1e-13;            // pivot rows below this times |A| are null; the default misses round-off
+      mumps.cntl[2]    = 1e-12;            // pivot rows below this times |A| are null; the default misses round-off
     }
 
     ~Instance()
@@ -295,7 +295,7 @@ namespace Nodus
 
     // Two steps of refinement at most, kept only where they help (they cannot on an inconsistent singular system).
     std::vector<double> r = residual(b, x);
-    for (unsigned int step = 0; step < 2 && norm(r) > 1e-15 * norm_b; ++step)
+    for (unsigned int step = 0; step < 2 && norm(r) > 1e-14 * norm_b; ++step)
     {
       std::vector<double> refined = r;
       apply_inverse(refined);

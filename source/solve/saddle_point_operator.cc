@@ -131,6 +131,10 @@ namespace Nodus
     if (dealii::Utilities::MPI::max(uu_entries_.empty() ? 0 : 1, layout.communicator) != 0)
       C_uu_ = make_matrix(uu_entries_, u_map, u_map);
     equilibrate();
+    const double norms =
+        bulk().NormFrobenius() + B_->NormFrobenius() + C_->NormFrobenius() + (C_uu_ ? C_uu_->NormFrobenius() : 0.);
+    if (!std::isfinite(norms))
+      throw SolverFailure("Block solver: the matrix holds a value that is not finite.");
   }
 
   void SaddlePointOperator::equilibrate()

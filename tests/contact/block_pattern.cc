@@ -1,6 +1,6 @@
-// The block matrix and right-hand side of the paper's equations (60)-(61): slave node 1 sticks, 2 slips, 3 is open, each
-// facing one master node. All 12 x 12 blocks of the assembled matrix, unknowns (u slave 1-3, u master 1-3, lambda 1-3,
-// Lambda 1-3), are compared with the blocks written down by hand from the weak form.
+// The block matrix and right-hand side of the paper's equations (60)-(61): slave node 1 sticks, 2 slips, 3 is open,
+// each facing one master node. All 12 x 12 blocks of the assembled matrix, unknowns (u slave 1-3, u master 1-3, lambda
+// 1-3, Lambda 1-3), are compared with the blocks written down by hand from the weak form.
 
 #include "../contact_fixture.h"
 
@@ -11,7 +11,8 @@ using dealii::FullMatrix;
 
 namespace
 {
-  FullMatrix<double> block(const FullMatrix<double> &K, const std::vector<DoFIndex> &rows, const std::vector<DoFIndex> &columns)
+  FullMatrix<double>
+  block(const FullMatrix<double> &K, const std::vector<DoFIndex> &rows, const std::vector<DoFIndex> &columns)
   {
     FullMatrix<double> b(rows.size(), columns.size());
     for (unsigned int i = 0; i < rows.size(); ++i)
@@ -26,27 +27,28 @@ int main(int argc, char **argv)
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
 
   const double   mu = 0.5;
-  ContactFixture fixture({box("lower", "1,1,1", {0, 0, 0}, {1, 1, 1}, 1, 0), box("upper", "1,1,1", {0, 0, 1}, {1, 1, 2}, 1, 0)},
-                         {pair(region(2, {z_minus}), region(1, {z_plus}), mu)},
-                         1);
-  const auto    &surfaces = *fixture.surfaces;
-  auto          &state    = fixture.state;
+  ContactFixture fixture(
+      {box("lower", "1,1,1", {0, 0, 0}, {1, 1, 1}, 1, 0), box("upper", "1,1,1", {0, 0, 1}, {1, 1, 2}, 1, 0)},
+      {pair(region(2, {z_minus}), region(1, {z_plus}), mu)},
+      1);
+  const auto &surfaces = *fixture.surfaces;
+  auto       &state    = fixture.state;
 
   // Slave nodes 1 stick, 2 slip, 3 open, the fourth open as well; every threshold, multiplier and motion different.
   const double thresholds[] = {-2., -3., -4., -5.};
   for (unsigned int k = 0; k < 4; ++k)
   {
     fixture.status->assign(k, k < 2, k == 0, thresholds[k]);
-    state.lambda[k]   = -1. - k;
-    state.Lambda[k]   = {{0.3 + 0.1 * k, -0.2 * k}};
+    state.lambda[k] = -1. - k;
+    state.Lambda[k] = {{0.3 + 0.1 * k, -0.2 * k}};
     const Vector3 move({0.02 * (k + 1), -0.01 * k, -0.005 * (k + 1)});
     const auto    i = surfaces.slave_nodes()[k].node;
     state.increment[i] += move;
     state.x[i] += move;
   }
-  const ContactResidual     residual = fixture.assemble();
-  const FullMatrix<double>  K        = fixture.matrix();
-  const auto               &layout   = surfaces.layout();
+  const ContactResidual    residual = fixture.assemble();
+  const FullMatrix<double> K        = fixture.matrix();
+  const auto              &layout   = surfaces.layout();
 
   // The 12 blocks of unknowns.
   std::vector<std::vector<DoFIndex>> unknowns;
@@ -91,7 +93,8 @@ int main(int argc, char **argv)
   for (unsigned int i = 0; i < 12; ++i)
     for (unsigned int j = 0; j < 12; ++j)
       expected[i][j].reinit(unknowns[i].size(), unknowns[j].size());
-  const auto set = [&](const unsigned int i, const unsigned int j, const double factor, const FullMatrix<double> &b) {
+  const auto set = [&](const unsigned int i, const unsigned int j, const double factor, const FullMatrix<double> &b)
+  {
     expected[i][j].equ(factor, b);
     if (i != j)
       expected[j][i].copy_transposed(expected[i][j]);
@@ -115,7 +118,8 @@ int main(int argc, char **argv)
   set(8, 8, -m / h_n, one);
   set(11, 11, -m, two);
 
-  const char  *names[] = {"u1", "u2", "u3", "u'1", "u'2", "u'3", "lambda1", "lambda2", "lambda3", "Lambda1", "Lambda2", "Lambda3"};
+  const char *names[] = {
+      "u1", "u2", "u3", "u'1", "u'2", "u'3", "lambda1", "lambda2", "lambda3", "Lambda1", "Lambda2", "Lambda3"};
   unsigned int wrong = 0, nonzero = 0;
   for (unsigned int i = 0; i < 12; ++i)
     for (unsigned int j = 0; j < 12; ++j)
@@ -126,7 +130,8 @@ int main(int argc, char **argv)
       if (difference.frobenius_norm() > 1e-13)
       {
         ++wrong;
-        std::cout << "block (" << names[i] << ", " << names[j] << ") is wrong by " << difference.frobenius_norm() << std::endl;
+        std::cout << "block (" << names[i] << ", " << names[j] << ") is wrong by " << difference.frobenius_norm()
+                  << std::endl;
       }
     }
   std::cout << "blocks: 144 compared, " << nonzero << " not zero, " << wrong << " wrong" << std::endl;
@@ -137,7 +142,7 @@ int main(int argc, char **argv)
   {
     const double distance = 0.005 * (k + 1); // moved down by that much
     const double lambda   = state.lambda[k];
-    Vector3      force;   // R conjugate to the slave node's jump
+    Vector3      force; // R conjugate to the slave node's jump
     double       law = 0.;
     double       friction_law[2];
     if (k < 2)

@@ -31,9 +31,9 @@ namespace
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  using Weights = ContactPairParameters::Weights;
+  using Weights                                   = ContactPairParameters::Weights;
   const std::pair<Weights, std::string> weights[] = {
-    {Weights::nodal_quadrature, "nodal quadrature"}, {Weights::dual, "dual"}, {Weights::consistent, "consistent"}};
+      {Weights::nodal_quadrature, "nodal quadrature"}, {Weights::dual, "dual"}, {Weights::consistent, "consistent"}};
 
   for (const unsigned int degree : {1u, 2u})
     for (const auto &[weighting, name] : weights)

@@ -12,7 +12,8 @@ int main(int argc, char **argv)
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
 
   Parameters p;
-  p.bodies = {box("lower", "5,4,2", {0, 0, 0}, {1, 0.8, 0.4}, 100, 0.3), box("upper", "3,3,2", {0.1, 0.1, 0.4}, {0.6, 0.7, 0.8}, 200, 0.3)};
+  p.bodies = {box("lower", "5,4,2", {0, 0, 0}, {1, 0.8, 0.4}, 100, 0.3),
+              box("upper", "3,3,2", {0.1, 0.1, 0.4}, {0.6, 0.7, 0.8}, 200, 0.3)};
   for (auto &body : p.bodies)
     body.material.law = MaterialParameters::Law::neo_hookean;
   p.boundary_conditions = {hold("bottom", region(1, {z_minus}), {0, 1, 2}),
@@ -34,13 +35,15 @@ int main(int argc, char **argv)
     p.output.results_folder = s ? "block_results" : "direct_results";
     ContactProblem problem(p, world(), log());
     problem.run();
-    force[s] = problem.contact_resultants()[0].slave_force;
-    slip[s]  = problem.contact_resultants()[0].slip;
-    u[s]     = problem.displacement(2, {0.6, 0.7, 0.4});
+    force[s]      = problem.contact_resultants()[0].slave_force;
+    slip[s]       = problem.contact_resultants()[0].slip;
+    u[s]          = problem.displacement(2, {0.6, 0.7, 0.4});
     const auto &f = problem.contact_fields()[0];
     for (unsigned int k = 0; k < f.X.size(); ++k)
       if (f.status[k] == ContactStatus::slip)
-        cone = std::max(cone, std::abs(f.friction[k].norm() - 0.3 * f.pressure[k]) / problem.contact_resultants()[0].maximum_pressure);
+        cone = std::max(cone,
+                        std::abs(f.friction[k].norm() - 0.3 * f.pressure[k]) /
+                            problem.contact_resultants()[0].maximum_pressure);
   }
   const double reference[] = {-0.5099196518, 0., 1.684487187};
   for (unsigned int c = 0; c < 3; ++c)

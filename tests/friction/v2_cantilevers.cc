@@ -28,12 +28,14 @@ int main(int argc, char **argv)
 
   const double   reference[] = {436.99518570, 1668.0334566, 3264.5297606, 2741.9758698, 3092.5195229};
   ContactProblem problem(p, world(), log());
-  problem.on_increment([&](const unsigned int increment, const double t) {
-    if (increment % 10 == 0)
-      check("sum of reactions at t = " + std::to_string(t),
-            problem.reactions()[0].second[1] + problem.reactions()[1].second[1],
-            reference[increment / 10 - 1],
-            0.01);
-  });
+  problem.on_increment(
+      [&](const unsigned int increment, const double t)
+      {
+        if (increment % 10 == 0)
+          check("sum of reactions at t = " + std::to_string(t),
+                problem.reactions()[0].second[1] + problem.reactions()[1].second[1],
+                reference[increment / 10 - 1],
+                0.01);
+      });
   problem.run();
 }

@@ -94,10 +94,13 @@ namespace Nodus
     struct Update
     {
       unsigned int              changes = 0;
-      unsigned int              period  = 0; ///< > 0: this status vector was visited that many passes ago
-      std::vector<unsigned int> slaves;      ///< that changed
+      unsigned int              period  = 0;     ///< > 0: this status vector was visited that many passes ago
+      bool                      cycles  = false; ///< visited again although nodes change one at a time
+      std::vector<unsigned int> slaves;          ///< that changed
     };
-    /// Tests every node and flips those that contradict their status (theory eq. 2, 3, 7, 8).
+    /// Tests every node and changes those that contradict their status (eq. 2, 3, 7, 8). Once a status vector comes
+    /// back, only the contradicting node of lowest number changes in a pass: Murty's least-index rule, which is finite
+    /// for frictionless contact at frozen geometry where changing all nodes at once may cycle.
     Update update(const StatusInput &input);
 
     unsigned int n_changes(const unsigned int slave) const
@@ -130,6 +133,7 @@ namespace Nodus
     double                                    threshold_floor_ = 0.;
     std::vector<unsigned int>                 n_changes_;
     std::vector<std::vector<char>>            visited_;
+    bool                                      one_at_a_time_ = false;
   };
 } // namespace Nodus
 

@@ -1,0 +1,99 @@
+#ifndef nodus_contact_problem_implementation_h
+#define nodus_contact_problem_implementation_h
+
+#include <nodus/bulk/boundary_conditions.h>
+#include <nodus/bulk/material.h>
+#include <nodus/bulk/solid_assembler.h>
+#include <nodus/contact/contact_assembler.h>
+#include <nodus/contact_problem.h>
+#include <nodus/mesh/bodies.h>
+#include <nodus/output/console.h>
+#include <nodus/output/tables.h>
+#include <nodus/output/vtu.h>
+#include <nodus/solve/fixed_point_loop.h>
+#include <nodus/solve/linear_solver.h>
+#include <nodus/solve/newton.h>
+
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/mapping_q.h>
+
+namespace Nodus
+{
+  /// Everything a run owns. contact_problem.cc builds it, follows the load path and reports; load_increment.cc holds
+  /// the three nested loops and what Newton sees.
+  struct ContactProblem::Implementation : public NewtonProblem
+  {
+    Implementation(const Parameters &parameters, MPI_Comm communicator, std::ostream &log);
+
+    // The algorithm, outermost first.
+    void run();
+    void solve_increment();
+    void pair_surfaces();
+    bool geometry_converged(FixedPointLoop &loop);
+    bool threshold_converged(FixedPointLoop &loop);
+    bool statuses_converged(FixedPointLoop &loop);
+
+    // Newton's view of it.
+    Norms        assemble() override;
+    unsigned int solve(BlockVector &correction) override;
+    void         advance(double factor, const BlockVector &correction) override;
+
+    void                gather_state();
+    std::vector<double> weighted_pressure() const;
+    std::string         slave_locus(unsigned int slave) const;
+    std::string         unknown_locus(DoFIndex flat_index) const;
+    void                commit();
+    void                roll_back();
+    void                write(unsigned int increment, bool last);
+    void                update_results();
+    void                summary();
+
+    const Parameters parameters;
+    MPI_Comm         communicator;
+    Console          console;
+
+    Bodies                                 bodies;
+    dealii::MappingQ<dim>                  mapping;
+    dealii::FESystem<dim>                  fe;
+    dealii::DoFHandler<dim>                dof_handler;
+    dealii::IndexSet                       relevant;
+    std::vector<std::unique_ptr<Material>> materials;
+    std::unique_ptr<BoundaryConditions>    boundary_conditions;
+    std::unique_ptr<SolidAssembler>        solid;
+
+    std::unique_ptr<ContactSurfaces>  surfaces;
+    Pairing                           pairing;
+    JumpOperator                      jump;
+    SurfaceWeights                    weights;
+    std::unique_ptr<Status>           status;
+    std::unique_ptr<ContactAssembler> contact;
+
+    std::unique_ptr<LinearSolver> linear_solver;
+    LinearSystem                  system;
+    BlockVector                   solution, committed; ///< (u, lambda, Lambda), now and at the start of the load step
+    Vector                        relevant_u, internal, external, contact_force;
+    double                        length_scale; ///< displacements are measured against this when the step moves nothing
+
+    ContactState         state;
+    ContactResidual      residual;
+    std::vector<Vector3> u_start, u_geometry,
+        u_before_geometry;             ///< surface nodes: step start, this and the previous pairing
+    std::vector<unsigned int> cycling; ///< some of the nodes of the last status cycle
+    bool                      paired_before = false;
+
+    double          time = 0.;
+    IterationCounts pass, counts; ///< where the loops stand, and totals of the increment
+
+    std::vector<ContactFields>                   fields;
+    std::vector<ContactResultants>               resultants;
+    std::vector<std::pair<std::string, Vector3>> reactions;
+    std::function<void(unsigned int, double)>    callback;
+    std::unique_ptr<VtuOutput>                   vtu;
+    std::unique_ptr<Tables>                      tables;
+  };
+
+  /// "(x y z)", for messages.
+  std::string coordinates(const Point &X);
+} // namespace Nodus
+
+#endif

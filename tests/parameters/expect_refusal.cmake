@@ -1,0 +1,31 @@
+# Runs [LAUNCHER] NODUS on PRM with ARGUMENTS in the empty FOLDER; see CMakeLists.txt for what must come out.
+
+file(REMOVE_RECURSE ${FOLDER})
+file(MAKE_DIRECTORY ${FOLDER})
+execute_process(COMMAND ${LAUNCHER} ${NODUS} ${PRM} ${ARGUMENTS}
+  WORKING_DIRECTORY ${FOLDER}
+  RESULT_VARIABLE code
+  OUTPUT_VARIABLE screen
+  ERROR_VARIABLE message)
+
+# Messages must not depend on where the checkout lies.
+get_filename_component(source_folder ${PRM} DIRECTORY)
+string(REPLACE "${source_folder}/" "" message "${message}")
+
+if(LAUNCHER)
+  string(REGEX MATCHALL "nodus: [^\n]*\n" message "${message}")
+  string(REPLACE ";nodus: " "nodus: " message "${message}")
+endif()
+
+if(NOT code STREQUAL "1")
+  message(FATAL_ERROR "exit code ${code} instead of 1\n${screen}${message}")
+endif()
+file(GLOB left ${FOLDER}/*)
+if(left)
+  message(FATAL_ERROR "files were left behind: ${left}\n${message}")
+endif()
+file(WRITE ${FOLDER}.message "${message}")
+execute_process(COMMAND ${CMAKE_COMMAND} -E compare_files ${FOLDER}.message ${EXPECTED} RESULT_VARIABLE differs)
+if(differs)
+  message(FATAL_ERROR "${EXPECTED} does not have the message:\n${message}")
+endif()

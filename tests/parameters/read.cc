@@ -1,0 +1,145 @@
+// Every key of the .prm file reaches its member, "--set" wins over the file, and every_key.prm forgets no key.
+
+#include <nodus/parameter_file.h>
+#include <nodus/parameters.h>
+
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+using namespace Nodus;
+
+namespace
+{
+  template <typename Value>
+  void print(const std::string &name, const Value &value)
+  {
+    std::cout << name << ": " << value << '\n';
+  }
+
+  template <typename Value>
+  void print(const std::string &name, const std::vector<Value> &values)
+  {
+    std::cout << name << ':';
+    for (const auto &value : values)
+      std::cout << " [" << value << ']';
+    std::cout << '\n';
+  }
+
+  template <typename Enum>
+  void print_choice(const std::string &name, const Enum value)
+  {
+    std::cout << name << ": choice " << static_cast<int>(value) << '\n';
+  }
+
+  void print(const std::string &name, const RegionParameters &region)
+  {
+    print(name + " body", region.body);
+    print(name + " boundary ids", region.boundary_ids);
+    print(name + " where", region.where);
+  }
+
+  void print(const BodyParameters &body)
+  {
+    print("\nbody", body.name);
+    print("mesh file is in the folder of the .prm file",
+          body.mesh_file.empty() || body.mesh_file == SOURCE_DIR "/one_cell.msh");
+    print("volume ids", body.volume_ids);
+    print("generator", body.generator);
+    print("generator arguments", body.generator_arguments);
+    print("scale", body.scale);
+    print("rotation axis", body.rotation_axis);
+    print("rotation angle", body.rotation_angle);
+    print("translation", body.translation);
+    print("global refinement", body.global_refinement);
+    print_choice("law", body.material.law);
+    print("Young's modulus", body.material.youngs_modulus);
+    print("Poisson's ratio", body.material.poissons_ratio);
+    print("Mooney-Rivlin ratio", body.material.mooney_rivlin_ratio);
+  }
+
+  void print(const BoundaryConditionParameters &condition)
+  {
+    print("\nboundary condition", condition.name);
+    print_choice("type", condition.type);
+    print("region", condition.region);
+    print("components", condition.components);
+    print("value", condition.value);
+  }
+
+  void print(const ContactPairParameters &pair)
+  {
+    print("\ncontact pair", pair.name);
+    print("slave", pair.slave);
+    print("master", pair.master);
+    print("friction coefficient", pair.friction_coefficient);
+    print("normal augmentation factor", pair.normal_augmentation_factor);
+    print("tangential augmentation factor", pair.tangential_augmentation_factor);
+    print_choice("surface measure", pair.surface_measure);
+    print_choice("weights", pair.weights);
+    print_choice("normal", pair.normal);
+    print("search distance", pair.search_distance);
+    print("projection tolerance", pair.projection_tolerance);
+    print_choice("initial status", pair.initial_status);
+    print_choice("status test", pair.status_test);
+  }
+
+  void print(const std::string &name, const LoopParameters &loop)
+  {
+    print('\n' + name + ", maximum passes", loop.maximum_passes);
+    print(name + ", tolerance", loop.tolerance);
+  }
+
+  /// Keys that the reference lists and every_key.prm does not set.
+  unsigned int count_forgotten(const std::string &file)
+  {
+    std::stringstream prm;
+    prm << std::ifstream(file).rdbuf();
+    std::istringstream reference(Parameters::documentation());
+    unsigned int       forgotten = 0;
+    for (std::string row; std::getline(reference, row);)
+      if (row.compare(0, 2, "| ") == 0 && row.compare(0, 5, "| Key") != 0)
+      {
+        const std::string key = row.substr(2, row.find(" |") - 2);
+        if (prm.str().find("set " + key) == std::string::npos)
+        {
+          ++forgotten;
+          std::cout << "forgotten: " << key << '\n';
+        }
+      }
+    return forgotten;
+  }
+} // namespace
+
+int main()
+{
+  const std::string file = SOURCE_DIR "/every_key.prm";
+  const Parameters  parameters =
+      Parameters::read(file, {"Newton/Force tolerance=0.25", "Body 2/Material/Young's modulus = 3"});
+
+  print("title", parameters.title);
+  print("degree", parameters.degree);
+  for (const auto &body : parameters.bodies)
+    print(body);
+  for (const auto &condition : parameters.boundary_conditions)
+    print(condition);
+  for (const auto &pair : parameters.contact_pairs)
+    print(pair);
+  print("geometry loop", parameters.geometry_loop);
+  print("threshold loop", parameters.threshold_loop);
+  print("status loop", parameters.status_loop);
+  print("\nmaximum iterations", parameters.newton.maximum_iterations);
+  print("force tolerance", parameters.newton.force_tolerance);
+  print("contact tolerance", parameters.newton.contact_tolerance);
+  print("line search", parameters.newton.line_search);
+  print_choice("\nlinear solver", parameters.linear_solver.type);
+  print("tolerance", parameters.linear_solver.tolerance);
+  print("maximum iterations", parameters.linear_solver.maximum_iterations);
+  print("augmentation factor", parameters.linear_solver.augmentation_factor);
+  print("\ninterval ends", parameters.load_stepping.interval_ends);
+  print("increments", parameters.load_stepping.increments);
+  print("\nresults folder", parameters.output.results_folder);
+  print("VTU interval", parameters.output.vtu_interval);
+
+  print("\nkeys that every_key.prm forgets", count_forgotten(file));
+}
