@@ -26,10 +26,11 @@ int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
 
-  const double   mu = 0.5;
+  auto contact_pair                           = pair(region(2, {z_minus}), region(1, {z_plus}), 0.5);
+  contact_pair.tangential_augmentation_factor = 1.;
   ContactFixture fixture(
       {box("lower", "1,1,1", {0, 0, 0}, {1, 1, 1}, 1, 0), box("upper", "1,1,1", {0, 0, 1}, {1, 1, 2}, 1, 0)},
-      {pair(region(2, {z_minus}), region(1, {z_plus}), mu)},
+      {contact_pair},
       1);
   const auto &surfaces = *fixture.surfaces;
   auto       &state    = fixture.state;
@@ -40,7 +41,7 @@ int main(int argc, char **argv)
   {
     fixture.status->assign(k, k < 2, k == 0, thresholds[k]);
     state.lambda[k] = -1. - k;
-    state.Lambda[k] = {{0.3 + 0.1 * k, -0.2 * k}};
+    state.Lambda[k] = {{0.3 + 0.5 * k, -0.6 * k}}; // the slip node's w is longer than 1
     const Vector3 move({0.02 * (k + 1), -0.01 * k, -0.005 * (k + 1)});
     const auto    i = surfaces.slave_nodes()[k].node;
     state.increment[i] += move;
