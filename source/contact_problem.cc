@@ -21,15 +21,19 @@ namespace Nodus
       return materials;
     }
 
-    /// rho_n = factor E/h: the stiffness of a layer of slave material one face deep.
+    /// rho_n = factor E/h: the stiffness of a layer one slave face deep, of the pair's softest material.
     std::vector<double> normal_augmentations(const Parameters                             &parameters,
                                              const ContactSurfaces                        &surfaces,
                                              const std::vector<std::unique_ptr<Material>> &materials)
     {
       std::vector<double> rho;
       for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
-        rho.push_back(parameters.contact_pairs[p].normal_augmentation_factor *
-                      materials[surfaces.slave_body(p)]->youngs_modulus() / surfaces.face_size(p));
+      {
+        double softest = std::numeric_limits<double>::max();
+        for (const unsigned int body : surfaces.bodies(p))
+          softest = std::min(softest, materials[body]->youngs_modulus());
+        rho.push_back(parameters.contact_pairs[p].normal_augmentation_factor * softest / surfaces.face_size(p));
+      }
       return rho;
     }
 

@@ -18,6 +18,9 @@ namespace Nodus
         largest = std::max(largest, (a[i] - b[i]).norm());
       return largest;
     }
+
+    /// Forces below this fraction of stiffness times displacement are not resolved to the tolerance of Newton (1e-8).
+    constexpr double relative_force_floor = 1e-5;
   } // namespace
 
   std::string coordinates(const Point &X)
@@ -267,8 +270,18 @@ namespace Nodus
     Vector moved(solution.block(0));
     moved -= committed.block(0);
     const double length = std::max(moved.linfty_norm(), length_scale);
-    const double scale  = std::max({internal.linfty_norm(), external.linfty_norm(), contact_force.linfty_norm()});
-    double       force  = 0.;
+    if (stiffness_scale == 0.)
+    {
+      for (const auto i : surfaces->layout().owned[0])
+        stiffness_scale = std::max(stiffness_scale, std::abs(system.bulk.diag_element(i)));
+      stiffness_scale = dealii::Utilities::MPI::max(stiffness_scale, communicator);
+    }
+    // The last term is round-off: without it a body that only translates would be measured against its own noise.
+    const double scale = std::max({internal.linfty_norm(),
+                                   external.linfty_norm(),
+                                   contact_force.linfty_norm(),
+                                   relative_force_floor * stiffness_scale * length});
+    double       force = 0.;
     for (const auto i : surfaces->layout().owned[0])
       if (!constraints.is_constrained(i))
         force = std::max(force, std::abs(internal(i) - external(i) + contact_force(i)));
@@ -286,6 +299,10 @@ namespace Nodus
     if (!report.null_pivots.empty())
       throw SolverFailure("the system is singular (" + std::to_string(report.null_pivots.size()) +
                           " null pivots), first at " + unknown_locus(report.null_pivots.front()));
+    const long surplus = report.negative_pivots - 3 * static_cast<long>(surfaces->layout().n_slave_nodes);
+    if (report.negative_pivots >= 0 && surplus != 0)
+      console.remark("the tangent has " + std::to_string(std::abs(surplus)) + " negative eigenvalues " +
+                     (surplus > 0 ? "more" : "less") + " than multipliers: the state is not stable");
     // The solver leaves prescribed components alone: they take what the constraints still ask for.
     boundary_conditions->increment_constraints(relevant_u).distribute(correction.block(0));
     return report.iterations;

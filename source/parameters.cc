@@ -149,8 +149,8 @@ namespace Nodus
       add_choice(prm, "Law", material.law, law_names, "Elastic law [-]. All but the first are finite-strain laws.");
       prm.add_parameter("Young's modulus",
                         material.youngs_modulus,
-                        "Young's modulus of the undeformed material [pressure].",
-                        positive);
+                        "Young's modulus of the undeformed material [pressure], > 0. Must be given.",
+                        not_negative);
       prm.add_parameter("Poisson's ratio",
                         material.poissons_ratio,
                         "Poisson's ratio of the undeformed material [-], > -1 and < 0.5.",

@@ -1,12 +1,9 @@
+#include <nodus/mesh/expression.h>
 #include <nodus/parameter_file.h>
 #include <nodus/parameters.h>
 
-#include <deal.II/base/function_parser.h>
-#include <deal.II/base/numbers.h>
-
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 #include <set>
 #include <sstream>
 
@@ -29,36 +26,9 @@ namespace Nodus
       }
     };
 
-    /// muParser's complaint about an expression of @p variables; empty when it is fine.
-    std::string complaint(const std::string &expression, const std::string &variables)
-    {
-      // deal.II prints its own copy of the complaint to std::cerr.
-      std::ostringstream    unwanted;
-      std::streambuf *const screen = std::cerr.rdbuf(unwanted.rdbuf());
-      std::string           message;
-      try
-      {
-        dealii::FunctionParser<dim> function(1);
-        function.initialize(variables, expression, {{"pi", dealii::numbers::PI}}, variables == "x,y,z,t");
-        function.value(Point(0.5, 0.25, 0.125)); // parsed at the first evaluation
-      }
-      catch (const dealii::ExceptionBase &error)
-      {
-        std::ostringstream text;
-        error.print_info(text);
-        message              = text.str();
-        const auto parser    = message.find("said: ");
-        message              = parser == std::string::npos ? message : message.substr(parser + 6);
-        const auto last_word = message.find_last_not_of(". \n");
-        message.resize(last_word + 1);
-      }
-      std::cerr.rdbuf(screen);
-      return message;
-    }
-
     void check_expression(const Section &section, const std::string &key, const std::string &text, const bool timed)
     {
-      const std::string problem = complaint(text, timed ? "x,y,z,t" : "x,y,z");
+      const std::string problem = expression_complaint(text, timed ? "x,y,z,t" : "x,y,z");
       section.require(problem.empty(),
                       key,
                       "has the expression '" + text + "' that does not parse: " + problem + "; variables are x, y, z" +
@@ -67,6 +37,7 @@ namespace Nodus
 
     void check(const Section &section, const MaterialParameters &material)
     {
+      section.require(material.youngs_modulus > 0., "Young's modulus", "must be given and > 0");
       section.require(material.poissons_ratio > -1. && material.poissons_ratio < 0.5,
                       "Poisson's ratio",
                       "must be > -1 and < 0.5; for nearly incompressible material take 0.49");

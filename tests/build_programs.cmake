@@ -1,4 +1,4 @@
-# Builds all test programs. cmake -D BINARY_DIR=... -D CORES=... -P build_programs.cmake
+# Builds all test programs and forgets the results of earlier runs. cmake -D BINARY_DIR=... -D CORES=... -P build_programs.cmake
 #
 # deal.II's run_test.cmake keeps a file interrupt_guard.cc, a source of each program, in place while a test runs and
 # renames it to interrupt_guard.cc_bck afterwards: one that is in place when a test starts tells of an interrupted test,
@@ -21,6 +21,12 @@ file(GLOB_RECURSE guards ${BINARY_DIR}/tests/interrupt_guard.cc)
 foreach(guard ${guards})
   file(RENAME ${guard} ${guard}_bck)
 endforeach()
+
+# A test is a file to ninja and would not be run again as long as its program stays the same.
+file(GLOB_RECURSE outputs ${BINARY_DIR}/tests/output ${BINARY_DIR}/tests/diff)
+if(outputs)
+  file(REMOVE ${outputs})
+endif()
 if(result)
   message(FATAL_ERROR "the test programs do not build")
 endif()

@@ -72,6 +72,7 @@ namespace Nodus
     LinearSystem                  system;
     BlockVector                   solution, committed; ///< (u, lambda, Lambda), now and at the start of the load step
     Vector                        relevant_u, internal, external, contact_force;
+    double                        stiffness_scale = 0.; ///< largest diagonal entry of the first bulk tangent
     double                        length_scale; ///< displacements are measured against this when the step moves nothing
 
     ContactState         state;

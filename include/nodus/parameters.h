@@ -38,7 +38,7 @@ namespace Nodus
       mooney_rivlin
     };
     Law    law                 = Law::neo_hookean;
-    double youngs_modulus      = 1.;  ///< initial E [pressure]
+    double youngs_modulus      = 0.;  ///< initial E > 0 [pressure], to be given
     double poissons_ratio      = 0.3; ///< initial nu [-], in (-1, 1/2)
     double mooney_rivlin_ratio = 0.;  ///< c01/c10 >= 0 (Mooney-Rivlin only)
   };
@@ -108,7 +108,7 @@ namespace Nodus
     RegionParameters slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
     RegionParameters master; ///< keys "Master body", ...
     double           friction_coefficient           = 0.;
-    double           normal_augmentation_factor     = 1.; ///< times E/h gives rho_n
+    double           normal_augmentation_factor     = 1.;  ///< times E/h gives rho_n
     double           tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
     SurfaceMeasure   surface_measure                = SurfaceMeasure::current;
     Weights          weights                        = Weights::nodal_quadrature;
@@ -143,7 +143,7 @@ namespace Nodus
     Type         type                = Type::direct;
     double       tolerance           = 1e-10; ///< block: relative residual
     unsigned int maximum_iterations  = 500;   ///< block: FGMRES iterations
-    double       augmentation_factor = 10.;   ///< block: gamma, in units of the diagonal of the stiffness
+    double       augmentation_factor = 2.;    ///< block: gamma, in units of the diagonal of the stiffness
   };
 
   struct LoadSteppingParameters

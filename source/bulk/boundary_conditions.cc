@@ -1,5 +1,6 @@
 #include <nodus/bulk/boundary_conditions.h>
 #include <nodus/bulk/throw_everywhere.h>
+#include <nodus/mesh/expression.h>
 
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe.h>
@@ -7,7 +8,6 @@
 
 #include <array>
 #include <cmath>
-#include <iostream>
 #include <sstream>
 
 namespace Nodus
@@ -26,27 +26,6 @@ namespace Nodus
     using Type         = BoundaryConditionParameters::Type;
     using CellIterator = DoFHandler<dim>::active_cell_iterator;
 
-    /// deal.II writes what muParser says to std::cerr on each rank before it throws the same text.
-    struct SilentErrors
-    {
-      std::ostringstream    sink;
-      std::streambuf *const before = std::cerr.rdbuf(sink.rdbuf());
-
-      ~SilentErrors()
-      {
-        std::cerr.rdbuf(before);
-      }
-    };
-
-    std::string reason(const ExceptionBase &error)
-    {
-      std::ostringstream text;
-      error.print_info(text);
-      const std::string words = text.str();
-      const auto        begin = words.find_first_not_of(" \n");
-      return begin == std::string::npos ? "" : words.substr(begin, words.find_last_not_of(" \n") + 1 - begin);
-    }
-
     std::unique_ptr<FunctionParser<dim>> parse(const BoundaryConditionParameters &parameters, const std::string &label)
     {
       const std::size_t expected = parameters.type == Type::pressure ? 1 : parameters.components.size();
@@ -57,20 +36,13 @@ namespace Nodus
                               : std::to_string(expected) + " 'Components'; write one expression for each component"));
 
       const std::map<std::string, double> constants = {{"pi", numbers::PI}};
-      const SilentErrors                  silent;
       for (const auto &expression : parameters.value)
-        try
-        {
-          // muParser reads an expression when it is first evaluated
-          FunctionParser<dim> probe(1);
-          probe.initialize("x,y,z,t", expression, constants, true);
-          probe.value(Point());
-        }
-        catch (const ExceptionBase &error)
-        {
-          throw InputError(label + ": 'Value' = '" + expression + "' cannot be evaluated (" + reason(error) +
+      {
+        const std::string complaint = expression_complaint(expression, "x,y,z,t");
+        if (!complaint.empty())
+          throw InputError(label + ": 'Value' = '" + expression + "' cannot be evaluated (" + complaint +
                            "); write an expression of x, y, z, t");
-        }
+      }
       auto function = std::make_unique<FunctionParser<dim>>(expected);
       function->initialize("x,y,z,t", parameters.value, constants, true);
       return function;

@@ -20,8 +20,7 @@ namespace Nodus
       unsigned int pair, side, rank, body;
 
       template <typename Archive>
-      void
-      serialize(Archive &archive, const unsigned int)
+      void serialize(Archive &archive, const unsigned int)
       {
         archive &dofs &X &orientation &pair &side &rank &body;
       }
@@ -139,7 +138,7 @@ namespace Nodus
       , slave_faces_(pairs.size())
       , master_faces_(pairs.size())
       , face_size_(pairs.size(), 0.)
-      , slave_body_(pairs.size(), dealii::numbers::invalid_unsigned_int)
+      , bodies_(pairs.size())
   {
     const MPI_Comm communicator = dof_handler.get_communicator();
 
@@ -209,8 +208,7 @@ namespace Nodus
           slave_pair[i] = r.pair;
         }
       }
-      if (r.side == slave_side && slave_body_[r.pair] == dealii::numbers::invalid_unsigned_int)
-        slave_body_[r.pair] = r.body;
+      bodies_[r.pair].insert(r.body);
       (r.side == slave_side ? slave_faces_ : master_faces_)[r.pair].push_back(std::move(face));
     }
 

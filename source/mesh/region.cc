@@ -1,10 +1,9 @@
+#include <nodus/mesh/expression.h>
 #include <nodus/mesh/region.h>
 
 #include <deal.II/base/function_parser.h>
 #include <deal.II/base/numbers.h>
 
-#include <cmath>
-#include <iostream>
 #include <set>
 #include <sstream>
 
@@ -12,59 +11,16 @@ namespace Nodus
 {
   namespace
   {
-    /// deal.II prints five lines to std::cerr on each rank before it throws; the exception says all of it.
-    class SilentErrors
+    std::unique_ptr<dealii::FunctionParser<dim>> parse_predicate(const std::string &expression,
+                                                                 const std::string &context)
     {
-    public:
-      SilentErrors()
-          : before_(std::cerr.rdbuf(sink_.rdbuf()))
-      {
-      }
-      ~SilentErrors()
-      {
-        std::cerr.rdbuf(before_);
-      }
-      SilentErrors(const SilentErrors &)            = delete;
-      SilentErrors &operator=(const SilentErrors &) = delete;
-
-    private:
-      std::ostringstream sink_;
-      std::streambuf    *before_;
-    };
-
-    std::string reason(const std::exception &error)
-    {
-      const auto *from_deal = dynamic_cast<const dealii::ExceptionBase *>(&error);
-      if (from_deal == nullptr)
-        return error.what();
-      std::ostringstream text;
-      from_deal->print_info(text);
-      std::string result = text.str();
-      for (char &c : result)
-        if (c == '\n')
-          c = ' ';
-      result.erase(0, result.find_first_not_of(' '));
-      result.erase(result.find_last_not_of(' ') + 1);
-      return result;
-    }
-
-    std::unique_ptr<dealii::FunctionParser<dim>>
-    parse_predicate(const std::string &expression, const Point &probe, const std::string &context)
-    {
-      const SilentErrors silent;
-      try
-      {
-        auto predicate = std::make_unique<dealii::FunctionParser<dim>>(1);
-        predicate->initialize("x,y,z", expression, {{"pi", dealii::numbers::PI}});
-        // muParser reads the expression at its first evaluation.
-        predicate->value(probe);
-        return predicate;
-      }
-      catch (const std::exception &error)
-      {
-        throw InputError(context + ": 'Where' = " + expression + " cannot be evaluated (" + reason(error) +
+      const std::string complaint = expression_complaint(expression, "x,y,z");
+      if (!complaint.empty())
+        throw InputError(context + ": 'Where' = " + expression + " cannot be evaluated (" + complaint +
                          "); write a condition on x, y, z such as abs(x) < 1e-9 && z > 0.5");
-      }
+      auto predicate = std::make_unique<dealii::FunctionParser<dim>>(1);
+      predicate->initialize("x,y,z", expression, {{"pi", dealii::numbers::PI}});
+      return predicate;
     }
   } // namespace
 
@@ -93,7 +49,7 @@ namespace Nodus
       }
 
     if (parameters.where.find_first_not_of(" \t") != std::string::npos)
-      predicate_ = parse_predicate(parameters.where, bodies.bounding_box(body_ == 0 ? 0 : body_ - 1).center(), context);
+      predicate_ = parse_predicate(parameters.where, context);
   }
 
   Region::~Region()                  = default;

@@ -11,6 +11,7 @@
 #include <deal.II/lac/affine_constraints.h>
 
 #include <array>
+#include <set>
 #include <vector>
 
 namespace Nodus
@@ -96,10 +97,10 @@ namespace Nodus
     {
       return face_size_[pair];
     }
-    /// Index of the body that the slave side of the pair belongs to (of its first face).
-    unsigned int slave_body(const unsigned int pair) const
+    /// Indices of the bodies of the pair's slave and master faces.
+    const std::set<unsigned int> &bodies(const unsigned int pair) const
     {
-      return slave_body_[pair];
+      return bodies_[pair];
     }
     const BlockLayout &layout() const
     {
@@ -127,7 +128,7 @@ namespace Nodus
     std::pair<unsigned int, unsigned int> owned_range_;
     std::vector<std::vector<SurfaceFace>> slave_faces_, master_faces_;
     std::vector<double>                   face_size_;
-    std::vector<unsigned int>             slave_body_;
+    std::vector<std::set<unsigned int>>   bodies_;
     std::vector<std::array<bool, dim>>    fixed_;
     BlockLayout                           layout_;
     dealii::IndexSet                      surface_dofs_;

@@ -1,0 +1,37 @@
+#include <nodus/mesh/expression.h>
+#include <nodus/types.h>
+
+#include <deal.II/base/function_parser.h>
+#include <deal.II/base/numbers.h>
+
+#include <iostream>
+#include <sstream>
+
+namespace Nodus
+{
+  std::string expression_complaint(const std::string &expression, const std::string &variables)
+  {
+    // deal.II prints its own copy of the complaint to std::cerr.
+    std::ostringstream    unwanted;
+    std::streambuf *const screen = std::cerr.rdbuf(unwanted.rdbuf());
+    std::string           message;
+    try
+    {
+      dealii::FunctionParser<dim> function(1);
+      function.initialize(variables, expression, {{"pi", dealii::numbers::PI}}, variables == "x,y,z,t");
+      function.value(Point(0.5, 0.25, 0.125)); // parsed at the first evaluation
+    }
+    catch (const dealii::ExceptionBase &error)
+    {
+      std::ostringstream text;
+      error.print_info(text);
+      message              = text.str();
+      const auto parser    = message.find("said: ");
+      message              = parser == std::string::npos ? message : message.substr(parser + 6);
+      const auto last_word = message.find_last_not_of(". \n");
+      message.resize(last_word + 1);
+    }
+    std::cerr.rdbuf(screen);
+    return message;
+  }
+} // namespace Nodus
