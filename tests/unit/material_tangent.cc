@@ -163,6 +163,7 @@ int main()
   try
   {
     Nodus::MaterialParameters incompressible;
+    incompressible.youngs_modulus = 1.;
     incompressible.poissons_ratio = 0.5;
     Nodus::make_material(incompressible);
     std::cout << "nu = 0.5 accepted: NO" << std::endl;

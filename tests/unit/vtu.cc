@@ -199,10 +199,11 @@ namespace
   BodyParameters cube(const double bottom)
   {
     BodyParameters body;
-    body.generator           = "hyper_cube";
-    body.generator_arguments = "0 : 1 : true";
-    body.global_refinement   = 1;
-    body.translation[2]      = bottom;
+    body.generator               = "hyper_cube";
+    body.generator_arguments     = "0 : 1 : true";
+    body.global_refinement       = 1;
+    body.translation[2]          = bottom;
+    body.material.youngs_modulus = 1.;
     return body;
   }
 
