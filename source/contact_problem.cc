@@ -237,7 +237,7 @@ namespace Nodus
       unsigned int n = 0, found = 0, closed = 0;
       double       smallest = std::numeric_limits<double>::max(), largest = -smallest;
       for (unsigned int k = 0; k < p.pairing.size(); ++k)
-        if (p.surfaces->slave_nodes()[k].pair == pair)
+        if (p.surfaces->pair(k) == pair && p.surfaces->has_status(k))
         {
           ++n;
           closed += p.status->contact(k);
@@ -249,7 +249,8 @@ namespace Nodus
           largest          = std::max(largest, gap);
         }
       std::ostringstream text;
-      text << "  contact pair " << pair + 1 << ": " << found << " of " << n << " slave nodes find a master point";
+      text << "  contact pair " << pair + 1 << ": " << found << " of " << n
+           << (p.surfaces->has_points(pair) ? " integration points" : " slave nodes") << " find a master point";
       if (found > 0)
         text << ", gap " << smallest << " to " << largest << ", " << closed << " start closed";
       p.console.line(text.str());

@@ -1,3 +1,4 @@
+#include <nodus/contact/site_values.h>
 #include <nodus/contact_problem_implementation.h>
 
 #include <deal.II/base/mpi.h>
@@ -34,6 +35,7 @@ namespace Nodus
   void ContactProblem::Implementation::solve_increment()
   {
     counts = IterationCounts();
+    status->begin_increment();
     surfaces->gather(committed.block(0), u_start);
     const Newton newton(parameters.newton);
 
@@ -45,7 +47,7 @@ namespace Nodus
       FixedPointLoop threshold("threshold", parameters.threshold_loop);
       do
       {
-        status->freeze_threshold(weighted_pressure());
+        status->freeze_threshold(site_pressure(weights, *status, state.lambda));
         status->begin_loop();
 
         FixedPointLoop statuses("status", parameters.status_loop);
@@ -74,12 +76,14 @@ namespace Nodus
     u_before_geometry = u_geometry;
     surfaces->gather(solution.block(0), u_geometry);
 
-    pairing.project(parameters.contact_pairs, *surfaces, state.x);
-    jump.build_nodal(*surfaces, pairing);
-    weights.compute(parameters.contact_pairs,
-                    *surfaces,
-                    state.x,
-                    surfaces->positions(std::vector<Vector3>(surfaces->nodes().size())));
+    const auto              &pairs = parameters.contact_pairs;
+    const std::vector<Point> X     = surfaces->positions(std::vector<Vector3>(surfaces->nodes().size()));
+    const ContactGeometry    geometry(pairs, *surfaces, state.x);
+    AveragedJump             averaged;
+    averaged.compute(pairs, *surfaces, geometry, state.x, X);
+    pairing.project(pairs, *surfaces, geometry, averaged);
+    jump.build(pairs, *surfaces, geometry, pairing, averaged);
+    weights.compute(pairs, *surfaces, averaged, state.x, X);
 
     if (!paired_before)
     {
@@ -113,65 +117,31 @@ namespace Nodus
     gather_state();
   }
 
-  std::vector<double> ContactProblem::Implementation::weighted_pressure() const
-  {
-    std::vector<double> filtered(state.lambda.size());
-    for (unsigned int k = 0; k < filtered.size(); ++k)
-      filtered[k] = status->contact(k) ? state.lambda[k] : 0.;
-    return weights.weighted(filtered);
-  }
-
   bool ContactProblem::Implementation::statuses_converged(FixedPointLoop &loop)
   {
-    const unsigned int n = surfaces->slave_nodes().size();
-    StatusInput        input;
-    input.pressure = weighted_pressure();
-    input.Lambda   = state.Lambda;
-    if (status->has_friction())
-      for (unsigned int i = 0; i < 2; ++i)
-      {
-        // the weighted friction traction over the weighted threshold, as for the pressure
-        std::vector<double> traction(n);
-        for (unsigned int k = 0; k < n; ++k)
-          traction[k] = status->friction(k) ? state.Lambda[k][i] : 0.;
-        traction = weights.weighted(traction);
-        for (unsigned int k = 0; k < n; ++k)
-          input.Lambda[k][i] = traction[k];
-      }
-    for (unsigned int k = 0; k < n; ++k)
-    {
-      if (parameters.contact_pairs[surfaces->slave_nodes()[k].pair].status_test ==
-          ContactPairParameters::StatusTest::raw)
-      {
-        input.pressure[k] = status->contact(k) ? state.lambda[k] : 0.;
-        input.Lambda[k]   = state.Lambda[k];
-      }
-      // without partner there is no distance: keep the test on the open side
-      input.distance.push_back(pairing[k].found ? contact->distance(state, k) : 0.);
-      input.slip.push_back(contact->slip(state, k));
-    }
-    const Status::Update update = status->update(input);
+    const Status::Update update =
+        status->update(status_input(parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state));
     ++counts.status;
     if (update.changes > 0)
     {
       console.remark(std::to_string(update.changes) + " statuses changed, first at " +
-                     slave_locus(update.slaves.front()));
+                     site_locus(update.sites.front()));
       if (update.cycles)
       {
         std::string nodes;
         for (const unsigned int k : cycling)
-          nodes += (nodes.empty() ? "" : "; ") + slave_locus(k);
+          nodes += (nodes.empty() ? "" : "; ") + site_locus(k);
         throw SolverFailure(
             "the status loop cycles, also with one change at a time; the nodes that change back and forth: " + nodes);
       }
       if (update.period > 0)
       {
-        cycling.assign(update.slaves.begin(), update.slaves.begin() + std::min<std::size_t>(3, update.slaves.size()));
+        cycling.assign(update.sites.begin(), update.sites.begin() + std::min<std::size_t>(3, update.sites.size()));
         console.remark("these statuses were met " + std::to_string(update.period) +
                        " passes ago: from here one node changes at a time");
       }
     }
-    return loop.finished(update.changes, update.changes > 0 ? slave_locus(update.slaves.front()) : "");
+    return loop.finished(update.changes, update.changes > 0 ? site_locus(update.sites.front()) : "");
   }
 
   bool ContactProblem::Implementation::threshold_converged(FixedPointLoop &loop)
@@ -179,11 +149,11 @@ namespace Nodus
     ++counts.threshold;
     if (!status->has_friction())
       return loop.finished(0., "");
-    const Status::Change change = status->threshold_change(weighted_pressure());
+    const Status::Change change = status->threshold_change(site_pressure(weights, *status, state.lambda));
     std::ostringstream   text;
-    text << "threshold changes by " << change.value << ", most at " << slave_locus(change.slave);
+    text << "threshold changes by " << change.value << ", most at " << site_locus(change.site);
     console.remark(text.str());
-    return loop.finished(change.value, slave_locus(change.slave));
+    return loop.finished(change.value, site_locus(change.site));
   }
 
   bool ContactProblem::Implementation::geometry_converged(FixedPointLoop &loop)
@@ -313,13 +283,14 @@ namespace Nodus
     solution.add(factor, correction);
   }
 
-  std::string ContactProblem::Implementation::slave_locus(const unsigned int slave) const
+  std::string ContactProblem::Implementation::site_locus(const unsigned int site) const
   {
-    if (slave >= surfaces->slave_nodes().size())
+    if (site >= surfaces->n_sites())
       return "";
-    const SlaveNode &s    = surfaces->slave_nodes()[slave];
-    const auto      &name = parameters.contact_pairs[s.pair].name;
-    return "slave node " + coordinates(surfaces->nodes()[s.node].X) + " of contact pair " + std::to_string(s.pair + 1) +
+    const unsigned int p    = surfaces->pair(site);
+    const auto        &name = parameters.contact_pairs[p].name;
+    return (surfaces->is_point(site) ? "integration point " : "slave node ") +
+           coordinates(surfaces->site_position(site)) + " of contact pair " + std::to_string(p + 1) +
            (name.empty() ? "" : " ('" + name + "')");
   }
 
@@ -330,7 +301,7 @@ namespace Nodus
     {
       const bool         pressure = flat_index < layout.Lambda(0, 0);
       const unsigned int k        = pressure ? flat_index - layout.lambda(0) : (flat_index - layout.Lambda(0, 0)) / 2;
-      return (pressure ? "the contact multiplier of " : "the friction multiplier of ") + slave_locus(k) +
+      return (pressure ? "the contact multiplier of " : "the friction multiplier of ") + site_locus(k) +
              ": this constraint repeats another one (over-constraint)";
     }
     std::map<DoFIndex, Point> points;
@@ -349,8 +320,8 @@ namespace Nodus
   void ContactProblem::Implementation::commit()
   {
     std::vector<std::array<double, 2>> slip;
-    for (unsigned int k = 0; k < surfaces->slave_nodes().size(); ++k)
-      slip.push_back(contact->slip(state, k));
+    for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
+      slip.push_back(contact->slip(state, s));
     status->commit(slip);
     committed = solution;
   }

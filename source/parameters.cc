@@ -1,8 +1,7 @@
 #include <nodus/parameter_file.h>
+#include <nodus/parameter_keys.h>
 #include <nodus/parameters.h>
 
-#include <deal.II/base/parameter_handler.h>
-#include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
 #include <filesystem>
@@ -14,12 +13,7 @@ namespace Nodus
 {
   namespace
   {
-    namespace Patterns = dealii::Patterns;
-    using dealii::ParameterHandler;
-
-    /// The texts of an enum in the .prm file. This is the only place where they are written.
-    template <typename Enum>
-    using Names = std::vector<std::pair<Enum, std::string>>;
+    using namespace ParameterKeys;
 
     const Names<MaterialParameters::Law> law_names = {
         {MaterialParameters::Law::linear_elastic, "linear elastic"},
@@ -34,64 +28,10 @@ namespace Nodus
         {BoundaryConditionParameters::Type::body_force, "body force"},
         {BoundaryConditionParameters::Type::spring, "spring"}};
 
-    const Names<ContactPairParameters::SurfaceMeasure> surface_measure_names = {
-        {ContactPairParameters::SurfaceMeasure::current, "current"},
-        {ContactPairParameters::SurfaceMeasure::reference, "reference"}};
-
-    const Names<ContactPairParameters::Weights> weights_names = {
-        {ContactPairParameters::Weights::nodal_quadrature, "nodal quadrature"},
-        {ContactPairParameters::Weights::dual, "dual"},
-        {ContactPairParameters::Weights::consistent, "consistent"}};
-
-    const Names<ContactPairParameters::Normal> normal_names = {
-        {ContactPairParameters::Normal::master_facet, "master facet"},
-        {ContactPairParameters::Normal::averaged, "averaged"}};
-
-    const Names<ContactPairParameters::InitialStatus> initial_status_names = {
-        {ContactPairParameters::InitialStatus::by_gap, "by gap"},
-        {ContactPairParameters::InitialStatus::closed, "closed"},
-        {ContactPairParameters::InitialStatus::open, "open"}};
-
-    const Names<ContactPairParameters::StatusTest> status_test_names = {
-        {ContactPairParameters::StatusTest::weighted, "weighted"}, {ContactPairParameters::StatusTest::raw, "raw"}};
-
     const Names<LinearSolverParameters::Type> solver_names = {{LinearSolverParameters::Type::direct, "direct"},
                                                               {LinearSolverParameters::Type::block, "block"}};
 
     const Names<unsigned int> component_names = {{0, "x"}, {1, "y"}, {2, "z"}};
-
-    template <typename Enum>
-    std::string selection(const Names<Enum> &names)
-    {
-      std::string texts;
-      for (const auto &[value, text] : names)
-        texts += (texts.empty() ? "" : "|") + text;
-      return texts;
-    }
-
-    template <typename Enum>
-    Enum value_of(const std::string &wanted, const Names<Enum> &names)
-    {
-      for (const auto &[value, text] : names)
-        if (text == wanted)
-          return value;
-      throw InputError("'" + wanted + "' is none of " + selection(names)); // kept out by the pattern
-    }
-
-    template <typename Enum>
-    void add_choice(ParameterHandler  &prm,
-                    const std::string &key,
-                    Enum              &value,
-                    const Names<Enum> &names,
-                    const std::string &documentation)
-    {
-      std::string default_text;
-      for (const auto &[candidate, text] : names)
-        if (candidate == value)
-          default_text = text;
-      prm.declare_entry(key, default_text, Patterns::Selection(selection(names)), documentation);
-      prm.add_action(key, [&value, &names](const std::string &text) { value = value_of(text, names); });
-    }
 
     /// Axes x, y, z as 0, 1, 2.
     void add_components(ParameterHandler          &prm,
@@ -120,28 +60,6 @@ namespace Nodus
       prm.add_action(key,
                      [&expressions](const std::string &text)
                      { expressions = dealii::Utilities::split_string_list(text, ';'); });
-    }
-
-    const Patterns::Double  any_number, not_negative(0.), positive(std::numeric_limits<double>::min());
-    const Patterns::Integer count(0), at_least_one(1);
-    const Patterns::List    ids(Patterns::Integer(0), 0, std::numeric_limits<unsigned int>::max(), ",");
-
-    /// @p prefix is "Slave ", "Master " or empty.
-    void add_region(ParameterHandler  &prm,
-                    const std::string &prefix,
-                    RegionParameters  &region,
-                    const std::string &every_body,
-                    const std::string &where)
-    {
-      prm.add_parameter(prefixed(prefix, "Body"), region.body, "Number of the body [-]" + every_body + ".", count);
-      prm.add_parameter(
-          prefixed(prefix, "Boundary ids"), region.boundary_ids, "Boundary ids of its faces [-], e.g. 1, 5.", ids);
-      prm.add_parameter(prefixed(prefix, "Where"),
-                        region.where,
-                        "Condition on the reference coordinates x, y, z [length] that thins the faces out, e.g. "
-                        "abs(x)<1e-9; empty: no condition. " +
-                            where,
-                        Patterns::Anything());
     }
 
     void add(ParameterHandler &prm, MaterialParameters &material)
@@ -222,51 +140,7 @@ namespace Nodus
 
     void add(ParameterHandler &prm, ContactPairParameters &pair)
     {
-      const std::string where = "It is asked at the centres of the faces.";
-      prm.add_parameter("Name", pair.name, "Name in tables and messages [-]; empty: pair <n>.", Patterns::Anything());
-      add_region(prm, "Slave ", pair.slave, " that carries the contact pressures", where);
-      add_region(prm, "Master ", pair.master, " that the slave nodes are projected onto", where);
-      prm.add_parameter("Friction coefficient",
-                        pair.friction_coefficient,
-                        "Coulomb's coefficient [-]; 0: no friction.",
-                        not_negative);
-      prm.add_parameter("Normal augmentation factor",
-                        pair.normal_augmentation_factor,
-                        "Factor on Young's modulus over face size, the scale of gaps against pressures [-]. It "
-                        "changes the path of the iteration, not the solution.",
-                        positive);
-      prm.add_parameter("Tangential augmentation factor",
-                        pair.tangential_augmentation_factor,
-                        "Factor on the scale of slips against friction tractions [-]. It changes the path of the "
-                        "iteration, not the solution.",
-                        positive);
-      add_choice(
-          prm, "Surface measure", pair.surface_measure, surface_measure_names, "Area that pressures refer to [-].");
-      add_choice(prm, "Weights", pair.weights, weights_names, "Integration of the contact terms over slave faces [-].");
-      add_choice(prm,
-                 "Normal",
-                 pair.normal,
-                 normal_names,
-                 "Contact normal [-]: of the master facet or smoothed over the facets at each master node.");
-      prm.add_parameter("Search distance",
-                        pair.search_distance,
-                        "Slave nodes farther than this from the master have no partner [length]; 0: automatic.",
-                        not_negative);
-      prm.add_parameter("Projection tolerance",
-                        pair.projection_tolerance,
-                        "How far a projection may hang over the rim of the master surface [face sizes].",
-                        not_negative);
-      add_choice(prm,
-                 "Initial status",
-                 pair.initial_status,
-                 initial_status_names,
-                 "Status of the slave nodes at the start [-].");
-      add_choice(prm,
-                 "Status test",
-                 pair.status_test,
-                 status_test_names,
-                 "Pressure used to decide between open and closed [-]: the weighted one is the nodal force over the "
-                 "nodal area.");
+      add_contact_pair(prm, pair);
     }
 
     void add(ParameterHandler &prm, LoopParameters &loop, const std::string &tolerance)

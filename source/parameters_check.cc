@@ -136,6 +136,19 @@ namespace Nodus
       section.require(!share_faces(pair.slave, pair.master),
                       "Master boundary ids",
                       "names faces that are slaves of the same pair; give the two sides different bodies or ids");
+
+      using Scheme = ContactPairParameters::Scheme;
+      using Rule   = ContactPairParameters::QuadratureRule;
+      section.require(pair.scheme == Scheme::nodal || pair.weights != ContactPairParameters::Weights::consistent,
+                      "Weights",
+                      "= consistent needs 'Scheme = nodal'; the other schemes bring their own weights, remove the key");
+      const unsigned int n = pair.quadrature_points;
+      section.require(n == 0 || pair.quadrature_rule != Rule::simpson || (n >= 3 && n % 2 == 1),
+                      "Quadrature points",
+                      "is " + std::to_string(n) + "; Simpson's rule takes an odd number from 3");
+      section.require(n == 0 || pair.quadrature_rule != Rule::newton_cotes || (n >= 2 && n <= 5) || n == 7,
+                      "Quadrature points",
+                      "is " + std::to_string(n) + "; Newton-Cotes rules with positive weights have 2, 3, 4, 5 or 7");
     }
 
     void check(const Section &section, const LinearSolverParameters &solver)

@@ -34,7 +34,7 @@ namespace Nodus
 
     std::string text    = R"(# Parameters
 
-Written by `nodus --document`; edit the descriptions in source/parameters.cc.
+Written by `nodus --document`; edit the descriptions in source/parameters*.cc.
 
 A case is a text file. `set Key = value` sets a key, `subsection Name` ... `end` enclose the keys of a section, `#`
 starts a comment and a `\` at the end of a line continues it. Bodies, boundary conditions and contact pairs are

@@ -43,9 +43,12 @@ struct ContactFixture
 
   void pair_at(const std::vector<Nodus::Point> &x)
   {
-    pairing.project(pairs, *surfaces, x);
-    jump.build_nodal(*surfaces, pairing);
-    weights.compute(pairs, *surfaces, x, x);
+    const Nodus::ContactGeometry geometry(pairs, *surfaces, x);
+    Nodus::AveragedJump          averaged;
+    averaged.compute(pairs, *surfaces, geometry, x, x);
+    pairing.project(pairs, *surfaces, geometry, averaged);
+    jump.build(pairs, *surfaces, geometry, pairing, averaged);
+    weights.compute(pairs, *surfaces, averaged, x, x);
   }
 
   Nodus::ContactResidual assemble()

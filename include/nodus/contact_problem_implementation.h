@@ -38,15 +38,14 @@ namespace Nodus
     unsigned int solve(BlockVector &correction) override;
     void         advance(double factor, const BlockVector &correction) override;
 
-    void                gather_state();
-    std::vector<double> weighted_pressure() const;
-    std::string         slave_locus(unsigned int slave) const;
-    std::string         unknown_locus(DoFIndex flat_index) const;
-    void                commit();
-    void                roll_back();
-    void                write(unsigned int increment, bool last);
-    void                update_results();
-    void                summary();
+    void        gather_state();
+    std::string site_locus(unsigned int site) const;
+    std::string unknown_locus(DoFIndex flat_index) const;
+    void        commit();
+    void        roll_back();
+    void        write(unsigned int increment, bool last);
+    void        update_results();
+    void        summary();
 
     const Parameters parameters;
     MPI_Comm         communicator;

@@ -77,6 +77,28 @@ namespace Nodus
 
   struct ContactPairParameters
   {
+    enum class Scheme
+    {
+      nodal,
+      integration_point,
+      averaged
+    };
+    enum class Integration
+    {
+      face,
+      segment
+    };
+    enum class QuadratureRule
+    {
+      gauss,
+      simpson,
+      newton_cotes
+    };
+    enum class Surface
+    {
+      faceted,
+      smoothed
+    };
     enum class SurfaceMeasure
     {
       current,
@@ -91,7 +113,8 @@ namespace Nodus
     enum class Normal
     {
       master_facet,
-      averaged
+      averaged,
+      slave
     };
     enum class InitialStatus
     {
@@ -110,8 +133,13 @@ namespace Nodus
     double           friction_coefficient           = 0.;
     double           normal_augmentation_factor     = 1.;  ///< times E/h gives rho_n
     double           tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
+    Scheme           scheme                         = Scheme::nodal;
+    Integration      integration                    = Integration::segment;  ///< averaged scheme
+    QuadratureRule   quadrature_rule                = QuadratureRule::gauss; ///< integration points, averaged by face
+    unsigned int     quadrature_points              = 0; ///< per direction of a slave face; 0 = automatic
     SurfaceMeasure   surface_measure                = SurfaceMeasure::current;
     Weights          weights                        = Weights::nodal_quadrature;
+    Surface          surface                        = Surface::faceted;
     Normal           normal                         = Normal::master_facet;
     double           search_distance                = 0.;   ///< [length]; 0 = automatic
     double           projection_tolerance           = 0.05; ///< overhang accepted, in face sizes

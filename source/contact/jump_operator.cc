@@ -1,22 +1,52 @@
 #include <nodus/contact/jump_operator.h>
 
+#include <cmath>
+
 namespace Nodus
 {
-  void JumpOperator::build_nodal(const ContactSurfaces &surfaces, const Pairing &pairing)
+  void JumpOperator::build(const std::vector<ContactPairParameters> &pairs,
+                           const ContactSurfaces                    &surfaces,
+                           const ContactGeometry                    &geometry,
+                           const Pairing                            &pairing,
+                           const AveragedJump                       &averaged)
   {
-    const auto &slaves = surfaces.slave_nodes();
     entries_.clear();
     start_.assign(1, 0);
-    for (unsigned int k = 0; k < slaves.size(); ++k)
+    middle_.clear();
+    offset_.assign(surfaces.n_sites(), Vector3());
+    const auto add_shape = [&](const SurfaceFace &face, const FaceShape &shape, const double sign)
     {
-      if (pairing[k].found)
+      for (unsigned int n = 0; n < shape.n; ++n)
+        if (std::abs(shape.value[n]) > 1e-15)
+          entries_.push_back({face.nodes[n], sign * shape.value[n]});
+    };
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+    {
+      const unsigned int p        = surfaces.pair(s);
+      const bool         averages = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
+      const Projection  &master   = pairing[s].master;
+      middle_.push_back(entries_.size());
+      if (pairing[s].found && averages)
       {
-        const SurfaceFace &face = surfaces.master_faces(slaves[k].pair)[pairing[k].face];
-        const FaceShape    shape(surfaces.degree(), pairing[k].xi, pairing[k].eta);
-        entries_.push_back({slaves[k].node, 1.});
-        for (unsigned int n = 0; n < face.nodes.size(); ++n)
-          if (std::abs(shape.value[n]) > 1e-15)
-            entries_.push_back({face.nodes[n], -shape.value[n]});
+        const AveragedJump::Row &row = averaged.row(s);
+        entries_.insert(entries_.end(), row.slave.begin(), row.slave.end());
+        middle_.back() = entries_.size();
+        entries_.insert(entries_.end(), row.master.begin(), row.master.end());
+        offset_[s] = row.offset;
+      }
+      else if (pairing[s].found && master.found())
+      {
+        offset_[s] = -geometry.master[p].offset(master.face, master.xi, master.eta);
+        if (surfaces.is_point(s))
+        {
+          const SlavePoint &point = surfaces.point(s);
+          add_shape(geometry.slave[p].face(point.face), FaceShape(surfaces.degree(), point.xi, point.eta), 1.);
+          offset_[s] += geometry.slave[p].offset(point.face, point.xi, point.eta);
+        }
+        else
+          entries_.push_back({surfaces.slave_nodes()[s].node, 1.});
+        middle_.back() = entries_.size();
+        add_shape(geometry.master[p].face(master.face), FaceShape(surfaces.degree(), master.xi, master.eta), -1.);
       }
       start_.push_back(entries_.size());
     }

@@ -24,9 +24,9 @@ namespace Nodus
       , normal_augmentation_(normal_augmentation)
       , has_friction_(
             std::any_of(pairs.begin(), pairs.end(), [](const auto &p) { return p.friction_coefficient > 0.; }))
-      , n_changes_(surfaces.slave_nodes().size(), 0)
+      , ledger_(surfaces.n_sites())
   {
-    const unsigned int n = surfaces.slave_nodes().size();
+    const unsigned int n = surfaces.n_sites();
     now_.contact.assign(n, false);
     now_.stick.assign(n, true);
     now_.threshold.assign(n, 0.);
@@ -39,20 +39,20 @@ namespace Nodus
     using Initial = ContactPairParameters::InitialStatus;
     for (unsigned int k = 0; k < now_.contact.size(); ++k)
     {
-      const unsigned int p      = surfaces_.slave_nodes()[k].pair;
+      const unsigned int p      = surfaces_.pair(k);
       const Initial      option = pairs_[p].initial_status;
-      now_.contact[k] =
-          pairing[k].found && (option == Initial::closed ||
-                               (option == Initial::by_gap && -distance[k] <= initial_gap * surfaces_.face_size(p)));
+      now_.contact[k]           = surfaces_.has_status(k) && pairing[k].found &&
+                        (option == Initial::closed ||
+                         (option == Initial::by_gap && -distance[k] <= initial_gap * surfaces_.face_size(p)));
     }
     committed_ = now_;
   }
 
-  void Status::assign(const unsigned int slave, const bool contact, const bool stick, const double threshold)
+  void Status::assign(const unsigned int site, const bool contact, const bool stick, const double threshold)
   {
-    now_.contact[slave]   = contact;
-    now_.stick[slave]     = stick;
-    now_.threshold[slave] = threshold;
+    now_.contact[site]   = contact;
+    now_.stick[site]     = stick;
+    now_.threshold[site] = threshold;
     update_floor();
   }
 
@@ -63,15 +63,15 @@ namespace Nodus
         now_.contact[k] = false;
   }
 
-  Status::Change Status::threshold_change(const std::vector<double> &weighted_pressure) const
+  Status::Change Status::threshold_change(const std::vector<double> &site_pressure) const
   {
     double largest = 0.;
     Change change;
-    for (unsigned int k = 0; k < weighted_pressure.size(); ++k)
+    for (unsigned int k = 0; k < site_pressure.size(); ++k)
     {
-      const double mu = pairs_[surfaces_.slave_nodes()[k].pair].friction_coefficient;
-      largest         = std::max(largest, mu * std::abs(weighted_pressure[k]));
-      const double d  = std::abs(mu * std::min(weighted_pressure[k], 0.) - now_.threshold[k]);
+      const double mu = pairs_[surfaces_.pair(k)].friction_coefficient;
+      largest         = std::max(largest, mu * std::abs(site_pressure[k]));
+      const double d  = std::abs(mu * std::min(site_pressure[k], 0.) - now_.threshold[k]);
       if (d > change.value)
         change = {d, k};
     }
@@ -80,11 +80,10 @@ namespace Nodus
     return change;
   }
 
-  void Status::freeze_threshold(const std::vector<double> &weighted_pressure)
+  void Status::freeze_threshold(const std::vector<double> &site_pressure)
   {
-    for (unsigned int k = 0; k < weighted_pressure.size(); ++k)
-      now_.threshold[k] =
-          pairs_[surfaces_.slave_nodes()[k].pair].friction_coefficient * std::min(weighted_pressure[k], 0.);
+    for (unsigned int k = 0; k < site_pressure.size(); ++k)
+      now_.threshold[k] = pairs_[surfaces_.pair(k)].friction_coefficient * std::min(site_pressure[k], 0.);
     update_floor();
   }
 
@@ -93,6 +92,11 @@ namespace Nodus
     threshold_floor_ = 0.;
     for (const double t : now_.threshold)
       threshold_floor_ = std::max(threshold_floor_, -relative_threshold_floor * t);
+  }
+
+  void Status::begin_increment()
+  {
+    ledger_.assign(ledger_.size(), StatusLedger());
   }
 
   void Status::begin_loop()
@@ -116,42 +120,43 @@ namespace Nodus
     std::vector<double> largest(pairs_.size(), 0.);
     for (unsigned int k = 0; k < input.pressure.size(); ++k)
     {
-      double &l = largest[surfaces_.slave_nodes()[k].pair];
+      double &l = largest[surfaces_.pair(k)];
       l         = std::max(l, std::abs(input.pressure[k]));
     }
 
     Update result;
     for (unsigned int k = 0; k < input.pressure.size(); ++k)
     {
-      const ContactStatus before    = status(k);
-      const double        tolerance = noise * largest[surfaces_.slave_nodes()[k].pair];
-      const double        value     = input.pressure[k] - normal_augmentation(k) * input.distance[k];
+      const double  tolerance = noise * largest[surfaces_.pair(k)];
+      const double  value     = input.pressure[k] - normal_augmentation(k) * input.distance[k];
+      Contradiction found     = Contradiction::none;
       if (now_.contact[k] && value > tolerance)
-        now_.contact[k] = false;
+        found = Contradiction::tension;
       else if (!now_.contact[k] && value < -tolerance)
-      {
-        now_.contact[k] = true;
-        now_.stick[k]   = true;
-      }
+        found = Contradiction::penetration;
       else if (friction(k))
       {
         const double rho = tangential_augmentation(k, now_.threshold[k]);
         const double norm =
             std::hypot(input.Lambda[k][0] + rho * input.slip[k][0], input.Lambda[k][1] + rho * input.slip[k][1]);
         if (now_.stick[k] && norm > 1. + noise)
-          now_.stick[k] = false;
+          found = Contradiction::over_cone;
         else if (!now_.stick[k] && norm < 1. - noise)
-          now_.stick[k] = true;
+          found = Contradiction::against_slip;
       }
-      if (status(k) != before)
-      {
-        ++n_changes_[k];
-        result.slaves.push_back(k);
-        if (one_at_a_time_)
-          break;
-      }
+      if (found == Contradiction::none)
+        continue;
+
+      now_.contact[k] = found != Contradiction::tension;
+      if (found != Contradiction::tension)
+        now_.stick[k] = found != Contradiction::over_cone; // a node that closes sticks first
+      ++ledger_[k].changes;
+      ledger_[k].last = found;
+      result.sites.push_back(k);
+      if (one_at_a_time_)
+        break;
     }
-    result.changes = result.slaves.size();
+    result.changes = result.sites.size();
     if (result.changes == 0)
       return result;
 
@@ -161,6 +166,14 @@ namespace Nodus
         result.period = back;
     if (result.period > 0)
     {
+      // every site that took part in the cycle
+      for (unsigned int back = 0; back < result.period; ++back)
+      {
+        const auto &a = visited_[visited_.size() - 1 - back], &b = visited_[visited_.size() - 2 - back];
+        for (unsigned int k = 0; k < a.size(); ++k)
+          if (a[k] != b[k])
+            ledger_[k].period = result.period;
+      }
       result.cycles  = one_at_a_time_;
       one_at_a_time_ = true;
       visited_.assign(1, code());

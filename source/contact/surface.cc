@@ -1,3 +1,4 @@
+#include <nodus/contact/face_rule.h>
 #include <nodus/contact/surface.h>
 #include <nodus/mesh/region.h>
 
@@ -101,16 +102,17 @@ namespace Nodus
   } // namespace
 
   FaceShape::FaceShape(const unsigned int degree, const double xi, const double eta)
+      : n((degree + 1) * (degree + 1))
   {
     double a[3], da[3], b[3], db[3];
     lagrange(degree, xi, a, da);
     lagrange(degree, eta, b, db);
-    for (unsigned int j = 0, n = 0; j <= degree; ++j)
-      for (unsigned int i = 0; i <= degree; ++i, ++n)
+    for (unsigned int j = 0, k = 0; j <= degree; ++j)
+      for (unsigned int i = 0; i <= degree; ++i, ++k)
       {
-        value[n] = a[i] * b[j];
-        d_xi[n]  = da[i] * b[j];
-        d_eta[n] = a[i] * db[j];
+        value[k] = a[i] * b[j];
+        d_xi[k]  = da[i] * b[j];
+        d_eta[k] = a[i] * db[j];
       }
   }
 
@@ -122,6 +124,16 @@ namespace Nodus
       x += shape.value[n] * p;
       d_xi += shape.d_xi[n] * p;
       d_eta += shape.d_eta[n] * p;
+    }
+  }
+
+  FaceGeometry::FaceGeometry(const FaceShape &shape, const Point *const points)
+  {
+    for (unsigned int n = 0; n < shape.n; ++n)
+    {
+      x += shape.value[n] * points[n];
+      d_xi += shape.d_xi[n] * points[n];
+      d_eta += shape.d_eta[n] * points[n];
     }
   }
 
@@ -236,6 +248,17 @@ namespace Nodus
         slave_nodes_.push_back({i, slave_pair[i]});
       }
 
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+    {
+      has_points_.push_back(pairs[p].scheme == ContactPairParameters::Scheme::integration_point);
+      if (!has_points_[p])
+        continue;
+      const dealii::Quadrature<2> rule = face_rule(pairs[p], degree_);
+      for (unsigned int f = 0; f < slave_faces_[p].size(); ++f)
+        for (unsigned int q = 0; q < rule.size(); ++q)
+          slave_points_.push_back({p, f, rule.point(q)[0], rule.point(q)[1], rule.weight(q)});
+    }
+
     const unsigned int rank  = dealii::Utilities::MPI::this_mpi_process(communicator);
     const auto         lower = [&](const unsigned int r)
     {
@@ -262,6 +285,18 @@ namespace Nodus
     std::sort(all_dofs.begin(), all_dofs.end());
     surface_dofs_.add_indices(all_dofs.begin(), all_dofs.end());
     surface_dofs_.compress();
+  }
+
+  Point ContactSurfaces::site_position(const unsigned int site) const
+  {
+    if (!is_point(site))
+      return nodes_[slave_nodes_[site].node].X;
+    const SlavePoint &p = point(site);
+    const FaceShape   shape(degree_, p.xi, p.eta);
+    Point             X;
+    for (unsigned int n = 0; n < shape.n; ++n)
+      X += shape.value[n] * nodes_[slave_faces_[p.pair][p.face].nodes[n]].X;
+    return X;
   }
 
   void ContactSurfaces::gather(const Vector &v, std::vector<Vector3> &nodal_values) const

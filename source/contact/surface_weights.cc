@@ -1,3 +1,4 @@
+#include <nodus/contact/averaged_jump.h>
 #include <nodus/contact/surface_weights.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -6,8 +7,10 @@ namespace Nodus
 {
   namespace
   {
-    /// Points and weights whose sum over a face gives the nodal areas: the nodes themselves, or Gauss points.
-    dealii::Quadrature<2> face_rule(const unsigned int degree, const ContactPairParameters::Weights weights)
+    constexpr unsigned int no_site = dealii::numbers::invalid_unsigned_int;
+
+    /// Rule whose sum over a face gives the nodal areas: the nodes themselves, or Gauss points.
+    dealii::Quadrature<2> area_rule(const unsigned int degree, const ContactPairParameters::Weights weights)
     {
       if (weights != ContactPairParameters::Weights::nodal_quadrature)
         return dealii::QGauss<2>(degree + 2);
@@ -19,46 +22,68 @@ namespace Nodus
 
   void SurfaceWeights::compute(const std::vector<ContactPairParameters> &pairs,
                                const ContactSurfaces                    &surfaces,
+                               const AveragedJump                       &averaged,
                                const std::vector<Point>                 &x,
                                const std::vector<Point>                 &X)
   {
-    using Weights = ContactPairParameters::Weights;
+    using Scheme           = ContactPairParameters::Scheme;
+    const auto  consistent = ContactPairParameters::Weights::consistent;
+    const auto &slaves     = surfaces.slave_nodes();
     points_.clear();
-    area_.assign(surfaces.slave_nodes().size(), 0.);
+    area_.assign(slaves.size(), 0.);
+
+    const auto measure = [&](const unsigned int p) -> const std::vector<Point> &
+    { return pairs[p].surface_measure == ContactPairParameters::SurfaceMeasure::current ? x : X; };
+    // Adds a point of a face to the nodal areas; as a point with all nodes of the face when asked to.
+    const auto add =
+        [&](const SurfaceFace &face, const FaceShape &shape, const double weight, const unsigned int p) -> ContactPoint
+    {
+      ContactPoint point{
+          weight * FaceGeometry(face, shape, measure(p)).area_vector().norm(), {}, {}, face.owner, no_site};
+      for (unsigned int n = 0; n < face.nodes.size(); ++n)
+      {
+        const unsigned int k = surfaces.slave_number(face.nodes[n]);
+        area_[k] += point.weight * shape.value[n];
+        point.slaves.push_back(k);
+        point.shape.push_back(shape.value[n]);
+      }
+      return point;
+    };
 
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
-      const auto &positions = pairs[p].surface_measure == ContactPairParameters::SurfaceMeasure::current ? x : X;
-      const auto  rule      = face_rule(surfaces.degree(), pairs[p].weights);
+      if (pairs[p].scheme == Scheme::integration_point)
+        continue;
+      const auto             rule = area_rule(surfaces.degree(), pairs[p].weights);
       std::vector<FaceShape> shapes;
       for (const auto &q : rule.get_points())
         shapes.emplace_back(surfaces.degree(), q[0], q[1]);
-
       for (const auto &face : surfaces.slave_faces(p))
         for (unsigned int q = 0; q < rule.size(); ++q)
         {
-          const double weight = rule.weight(q) * FaceGeometry(face, shapes[q], positions).area_vector().norm();
-          ContactPoint point{weight, {}, {}, face.owner};
-          for (unsigned int n = 0; n < face.nodes.size(); ++n)
-          {
-            const unsigned int k = surfaces.slave_number(face.nodes[n]);
-            area_[k] += weight * shapes[q].value[n];
-            if (pairs[p].weights == Weights::consistent)
-            {
-              point.slaves.push_back(k);
-              point.shape.push_back(shapes[q].value[n]);
-            }
-          }
-          if (pairs[p].weights == Weights::consistent)
+          ContactPoint point = add(face, shapes[q], rule.weight(q), p);
+          if (pairs[p].weights == consistent)
             points_.push_back(std::move(point));
         }
+    }
+    for (unsigned int s = slaves.size(); s < surfaces.n_sites(); ++s)
+    {
+      const SlavePoint &site  = surfaces.point(s);
+      ContactPoint      point = add(surfaces.slave_faces(site.pair)[site.face],
+                               FaceShape(surfaces.degree(), site.xi, site.eta),
+                               site.weight,
+                               site.pair);
+      point.site              = s;
+      points_.push_back(std::move(point));
     }
 
     for (unsigned int k = 0; k < area_.size(); ++k)
     {
-      const auto &slave = surfaces.slave_nodes()[k];
-      if (pairs[slave.pair].weights != Weights::consistent)
-        points_.push_back({area_[k], {k}, {1.}, surfaces.nodes()[slave.node].owner});
+      const auto &pair = pairs[slaves[k].pair];
+      if (pair.scheme == Scheme::averaged && averaged.covered(k))
+        area_[k] = averaged.row(k).area;
+      if (pair.scheme != Scheme::integration_point && pair.weights != consistent)
+        points_.push_back({area_[k], {k}, {1.}, surfaces.nodes()[slaves[k].node].owner, no_site});
     }
   }
 

@@ -19,7 +19,8 @@ namespace Nodus
                                     "contact area [area],maximum pressure [pressure],"
                                     "open nodes,slip nodes,stick nodes,unpaired nodes,"
                                     "geometry passes,threshold passes,status passes,Newton iterations,"
-                                    "Krylov iterations\n";
+                                    "Krylov iterations,status changes,tension,penetration,over cone,against slip,"
+                                    "longest status cycle\n";
 
     constexpr auto reaction_header = "increment,time,condition,force x [force],force y [force],force z [force]\n";
 
@@ -72,7 +73,11 @@ namespace Nodus
           print(contact_rows, v);
         contact_rows << ',' << pair.contact_area << ',' << pair.maximum_pressure << ',' << pair.open << ',' << pair.slip
                      << ',' << pair.stick << ',' << pair.unpaired << ',' << counts.geometry << ',' << counts.threshold
-                     << ',' << counts.status << ',' << counts.newton << ',' << counts.krylov << '\n';
+                     << ',' << counts.status << ',' << counts.newton << ',' << counts.krylov << ','
+                     << pair.status_changes;
+        for (const unsigned int n : pair.contradictions)
+          contact_rows << ',' << n;
+        contact_rows << ',' << pair.longest_cycle << '\n';
       }
       contact_rows_ += contact_rows.str();
 

@@ -148,7 +148,10 @@ namespace Nodus
                                                {"tangent1", dim},
                                                {"friction_traction", dim},
                                                {"displacement", dim},
-                                               {"area", 1}};
+                                               {"area", 1},
+                                               {"status_changes", 1},
+                                               {"cycle_period", 1},
+                                               {"contradiction", 1}};
 
     /// Where the six components of a symmetric tensor live in two vectors of three components per node.
     constexpr unsigned int stress_row[2][dim]    = {{0, 1, 2}, {1, 0, 0}};
@@ -303,6 +306,7 @@ namespace Nodus
             Column(patch.data, j) << c.pressure[k] << c.gap[k] << c.shear[0][k] << c.shear[1][k] << c.slip[0][k]
                                   << c.slip[1][k] << static_cast<unsigned int>(c.status[k]) << c.paired[k] << p + 1.
                                   << c.normal[k] << c.tangent1[k] << c.friction[k] << c.displacement[k] << c.area[k]
+                                  << c.status_changes[k] << c.cycle_period[k] << int(c.contradiction[k])
                                   << c.X[k] + c.displacement[k];
           }
         }

@@ -1,5 +1,6 @@
-// The contact tangent against central differences of the contact residual, 1e-6 relative, for every weighting, Q1 and
-// Q2 faces, and all status combinations on non-matching, curved and rotated surfaces; symmetry to 1e-12.
+// The contact tangent against central differences of the contact residual, 1e-6 relative, for every scheme and
+// weighting, Q1 and Q2 faces, faceted and smoothed, and all status combinations on non-matching, curved and rotated
+// surfaces; symmetry to 1e-12.
 
 #include "../contact_fixture.h"
 
@@ -15,11 +16,12 @@ namespace
     const ContactResidual r      = fixture.assemble();
     const auto           &layout = fixture.surfaces->layout();
     std::vector<double>   R(layout.size(), 0.);
+    for (unsigned int s = 0; s < fixture.surfaces->n_sites(); ++s)
+      for (auto e = fixture.jump.begin(s); e != fixture.jump.end(s); ++e)
+        for (unsigned int c = 0; c < 3; ++c)
+          R[fixture.surfaces->nodes()[e->node].dofs[c]] += e->weight * r.jump[s][c];
     for (unsigned int k = 0; k < layout.n_slave_nodes; ++k)
     {
-      for (auto e = fixture.jump.begin(k); e != fixture.jump.end(k); ++e)
-        for (unsigned int c = 0; c < 3; ++c)
-          R[fixture.surfaces->nodes()[e->node].dofs[c]] += e->weight * r.jump[k][c];
       R[layout.lambda(k)] = r.lambda[k];
       for (unsigned int i = 0; i < 2; ++i)
         R[layout.Lambda(k, i)] = r.Lambda[k][i];
@@ -31,12 +33,27 @@ namespace
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  using Weights                                   = ContactPairParameters::Weights;
-  const std::pair<Weights, std::string> weights[] = {
-      {Weights::nodal_quadrature, "nodal quadrature"}, {Weights::dual, "dual"}, {Weights::consistent, "consistent"}};
+  using Weights = ContactPairParameters::Weights;
+  using Scheme  = ContactPairParameters::Scheme;
+  struct Kind
+  {
+    std::string                        name;
+    Scheme                             scheme;
+    Weights                            weights;
+    ContactPairParameters::Integration integration;
+    ContactPairParameters::Surface     surface;
+  };
+  const auto face = ContactPairParameters::Integration::face, segment = ContactPairParameters::Integration::segment;
+  const auto faceted = ContactPairParameters::Surface::faceted, smoothed = ContactPairParameters::Surface::smoothed;
+  const Kind kinds[] = {{"nodal quadrature", Scheme::nodal, Weights::nodal_quadrature, face, faceted},
+                        {"dual", Scheme::nodal, Weights::dual, face, smoothed},
+                        {"consistent", Scheme::nodal, Weights::consistent, face, faceted},
+                        {"averaged, face", Scheme::averaged, Weights::dual, face, faceted},
+                        {"averaged, segment", Scheme::averaged, Weights::dual, segment, smoothed},
+                        {"integration point", Scheme::integration_point, Weights::dual, face, smoothed}};
 
   for (const unsigned int degree : {1u, 2u})
-    for (const auto &[weighting, name] : weights)
+    for (const auto &[name, scheme, weighting, integration, surface] : kinds)
     {
       auto bodies = std::vector<BodyParameters>{box("lower", "2,2,1", {0, 0, 0}, {1, 1, 1}, 1, 0),
                                                 box("upper", "1,3,1", {0.1, 0.1, 1.02}, {0.9, 0.9, 2}, 1, 0)};
@@ -45,8 +62,11 @@ int main(int argc, char **argv)
         b.rotation_axis  = Vector3({1, 2, 0.5});
         b.rotation_angle = 33;
       }
-      auto p    = pair(region(2, {z_minus}), region(1, {z_plus}), 0.4);
-      p.weights = weighting;
+      auto p        = pair(region(2, {z_minus}), region(1, {z_plus}), 0.4);
+      p.weights     = weighting;
+      p.scheme      = scheme;
+      p.integration = integration;
+      p.surface     = surface;
       ContactFixture fixture(bodies, {p}, degree);
       auto          &state = fixture.state;
 
@@ -62,10 +82,14 @@ int main(int argc, char **argv)
         }
       fixture.pair_at(state.x);
       unsigned int unpaired = 0;
+      for (unsigned int s = 0; s < fixture.surfaces->n_sites(); ++s)
+      {
+        const bool paired = fixture.pairing[s].found && fixture.surfaces->has_status(s);
+        unpaired += fixture.surfaces->has_status(s) && !paired;
+        fixture.status->assign(s, paired && s % 3 != 2, s % 3 == 0, -1. - 0.5 * random(generator));
+      }
       for (unsigned int k = 0; k < state.lambda.size(); ++k)
       {
-        unpaired += !fixture.pairing[k].found;
-        fixture.status->assign(k, k % 3 != 2, k % 3 == 0, -1. - 0.5 * random(generator));
         state.lambda[k] = -1. + 0.5 * random(generator);
         state.Lambda[k] = {{random(generator), random(generator)}};
       }

@@ -77,6 +77,11 @@ namespace
     print("tangential augmentation factor", pair.tangential_augmentation_factor);
     print_choice("surface measure", pair.surface_measure);
     print_choice("weights", pair.weights);
+    print_choice("scheme", pair.scheme);
+    print_choice("integration", pair.integration);
+    print_choice("quadrature rule", pair.quadrature_rule);
+    print("quadrature points", pair.quadrature_points);
+    print_choice("surface", pair.surface);
     print_choice("normal", pair.normal);
     print("search distance", pair.search_distance);
     print("projection tolerance", pair.projection_tolerance);

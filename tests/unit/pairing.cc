@@ -27,12 +27,15 @@ int main(int argc, char **argv)
                        double(j) / degree + 0.05 * random(generator),
                        0.15 * random(generator));
       }
-    double worst = 0.;
+    const std::vector<SurfaceFace>           faces = {face};
+    const std::vector<std::array<bool, dim>> fixed(x.size());
+    const SurfaceGeometry                    surface(faces, degree, x, fixed, ContactPairParameters::Surface::faceted);
+    double                                   worst = 0.;
     for (unsigned int trial = 0; trial < 200; ++trial)
     {
       const Point  p(0.5 + random(generator), 0.5 + random(generator), 0.3 * random(generator));
       double       xi, eta;
-      const double found = std::sqrt(closest_point(face, degree, x, p, xi, eta));
+      const double found = std::sqrt(closest_point(surface, 0, p, xi, eta));
       double       brute = 1e9;
       for (unsigned int i = 0; i <= 200; ++i)
         for (unsigned int j = 0; j <= 200; ++j)

@@ -183,6 +183,9 @@ namespace
         c.normal.push_back(Vector3({0., 0., 1.}));
         c.tangent1.push_back(Vector3({1., 0., 0.}));
         c.area.push_back(0.25);
+        c.status_changes.push_back(3);
+        c.cycle_period.push_back(2);
+        c.contradiction.push_back(1);
         c.paired.push_back(1);
       }
     return c;

@@ -23,18 +23,21 @@ namespace Nodus
     std::vector<std::array<double, 2>> Lambda; ///< per slave node, in its tangent frame
   };
 
-  /// Contact and friction terms of the residual (eq. 10-15), per slave node.
+  /// Contact and friction terms of the residual (eq. 10-15).
   struct ContactResidual
   {
-    std::vector<Vector3>               jump; ///< work conjugate to the nodal jump: minus the force on the slave [force]
-    std::vector<double>                lambda; ///< contact law [volume]
-    std::vector<std::array<double, 2>> Lambda; ///< friction law
+    std::vector<Vector3> jump;   ///< per site, work conjugate to its jump: minus the force on the slave [force]
+    std::vector<double>  lambda; ///< contact law, per slave node [volume]
+    std::vector<std::array<double, 2>> Lambda;          ///< friction law, per slave node
+    std::vector<double>                friction_weight; ///< sum of weight |mu lambda_s phi|, per slave node [force]
   };
 
   /// Residual and symmetric tangent of contact and friction for frozen pairing, statuses and threshold.
   ///
-  /// Every product of two contact fields is a sum over the points of SurfaceWeights of nodally filtered fields
-  /// (eq. 32-34): contact S, stick S S_f, slip S (1 - S_f), open 1 - S.
+  /// Every product of two contact fields is a sum over the points of SurfaceWeights of filtered fields: contact S,
+  /// stick S S_f, slip S (1 - S_f), open 1 - S. Nodal statuses filter the nodal values of both factors (eq. 32-34); a
+  /// point of the integration point scheme has one jump and one status, which filter the fields at the point (eq.
+  /// 10-21).
   class ContactAssembler
   {
   public:
@@ -54,9 +57,9 @@ namespace Nodus
     /// Largest relative violation of the contact and friction laws: lengths over @p length, friction law absolute.
     double norm(const ContactResidual &residual, double length) const;
 
-    /// d_n and the tangential jump of the increment at a slave node; zero where unpaired.
-    double                distance(const ContactState &state, unsigned int slave) const;
-    std::array<double, 2> slip(const ContactState &state, unsigned int slave) const;
+    /// d_n and the tangential jump of the increment at a site; zero where unpaired.
+    double                distance(const ContactState &state, unsigned int site) const;
+    std::array<double, 2> slip(const ContactState &state, unsigned int site) const;
 
   private:
     const ContactSurfaces &surfaces_;

@@ -1,6 +1,7 @@
 #ifndef nodus_contact_jump_operator_h
 #define nodus_contact_jump_operator_h
 
+#include <nodus/contact/averaged_jump.h>
 #include <nodus/contact/pairing.h>
 #include <nodus/contact/surface.h>
 
@@ -8,42 +9,58 @@
 
 namespace Nodus
 {
-  /// G: the jump of each slave node as a combination of nodal values, slave minus master (eq. 22).
+  /// G: the jump of each contact site as a combination of nodal values, slave minus master (eq. 18, 22).
+  ///
+  /// The schemes differ in its rows alone: a slave node against the master shape functions at its projection (nodal),
+  /// an integration point of a slave face against the same (integration point), or averages over the faces of a slave
+  /// node.
   class JumpOperator
   {
   public:
-    struct Entry
-    {
-      unsigned int node;   ///< index into ContactSurfaces::nodes()
-      double       weight; ///< 1 for the slave node, -phi'_k for master nodes
-    };
+    using Entry = AveragedJump::Entry;
 
-    /// Collocated jump: the slave node against the master shape functions at its projection. Unpaired nodes have no
-    /// entry.
-    void build_nodal(const ContactSurfaces &surfaces, const Pairing &pairing);
+    /// Sites without partner have no entry.
+    void build(const std::vector<ContactPairParameters> &pairs,
+               const ContactSurfaces                    &surfaces,
+               const ContactGeometry                    &geometry,
+               const Pairing                            &pairing,
+               const AveragedJump                       &averaged);
 
-    const Entry *begin(const unsigned int slave) const
+    /// Entries of the row: slave nodes (weights of sum 1) from begin to middle, master nodes (of sum -1) to end.
+    const Entry *begin(const unsigned int site) const
     {
-      return entries_.data() + start_[slave];
+      return entries_.data() + start_[site];
     }
-    const Entry *end(const unsigned int slave) const
+    const Entry *middle(const unsigned int site) const
     {
-      return entries_.data() + start_[slave + 1];
+      return entries_.data() + middle_[site];
+    }
+    const Entry *end(const unsigned int site) const
+    {
+      return entries_.data() + start_[site + 1];
     }
 
-    /// Jump of a nodal vector field (or of positions) at a slave node.
-    template <typename T>
-    Vector3 jump(const unsigned int slave, const std::vector<T> &field) const
+    /// Jump of a nodal displacement field at a site.
+    Vector3 jump(const unsigned int site, const std::vector<Vector3> &displacement) const
     {
       Vector3 result;
-      for (const Entry *e = begin(slave); e != end(slave); ++e)
-        result += e->weight * field[e->node];
+      for (const Entry *e = begin(site); e != end(site); ++e)
+        result += e->weight * displacement[e->node];
+      return result;
+    }
+    /// Jump of positions: with what smoothed surfaces add.
+    Vector3 jump(const unsigned int site, const std::vector<Point> &positions) const
+    {
+      Vector3 result = offset_[site];
+      for (const Entry *e = begin(site); e != end(site); ++e)
+        result += e->weight * positions[e->node];
       return result;
     }
 
   private:
     std::vector<Entry>        entries_;
-    std::vector<unsigned int> start_;
+    std::vector<unsigned int> start_, middle_;
+    std::vector<Vector3>      offset_;
   };
 } // namespace Nodus
 

@@ -13,7 +13,7 @@ namespace Nodus
 {
   class Pairing;
 
-  /// Nodal quantities that the status tests look at.
+  /// Quantities at the contact sites that the status tests look at.
   struct StatusInput
   {
     std::vector<double>                pressure; ///< lambda_bar (weighted) or lambda (raw) [pressure]
@@ -22,7 +22,26 @@ namespace Nodus
     std::vector<std::array<double, 2>> slip;     ///< tangential jump of the step's displacement [length]
   };
 
-  /// Contact status S, friction status S_f and frozen threshold mu lambda_s of every slave node.
+  /// Why a status changed: what contradicted it.
+  enum class Contradiction : char
+  {
+    none,
+    tension,     ///< while closed
+    penetration, ///< while open
+    over_cone,   ///< friction traction beyond the threshold while stick
+    against_slip ///< slip against the friction traction
+  };
+
+  /// What happened to a site's status in the increment.
+  struct StatusLedger
+  {
+    unsigned int  changes = 0;
+    unsigned int  period  = 0; ///< passes after which a cycle that moved this site came back; 0: no cycle
+    Contradiction last    = Contradiction::none;
+  };
+
+  /// Contact status S, friction status S_f and frozen threshold mu lambda_s of every contact site: slave nodes, or the
+  /// integration points of pairs with that scheme (their slave nodes stay open).
   class Status
   {
   public:
@@ -30,59 +49,64 @@ namespace Nodus
            const ContactSurfaces                    &surfaces,
            const std::vector<double>                &normal_augmentation);
 
-    bool contact(const unsigned int slave) const
+    /// Number of contact sites.
+    unsigned int size() const
     {
-      return now_.contact[slave];
+      return now_.contact.size();
+    }
+    bool contact(const unsigned int site) const
+    {
+      return now_.contact[site];
     }
     /// S_f: meaningful where friction() holds.
-    bool stick(const unsigned int slave) const
+    bool stick(const unsigned int site) const
     {
-      return now_.stick[slave];
+      return now_.stick[site];
     }
     /// mu lambda_s <= 0, frozen by the threshold loop.
-    double threshold(const unsigned int slave) const
+    double threshold(const unsigned int site) const
     {
-      return now_.threshold[slave];
+      return now_.threshold[site];
     }
-    /// In contact with a threshold above the relative floor; otherwise the node is frictionless.
-    bool friction(const unsigned int slave) const
+    /// In contact with a threshold above the relative floor; otherwise the site is frictionless.
+    bool friction(const unsigned int site) const
     {
-      return now_.contact[slave] && -now_.threshold[slave] > threshold_floor_;
+      return now_.contact[site] && -now_.threshold[site] > threshold_floor_;
     }
-    ContactStatus status(const unsigned int slave) const
+    ContactStatus status(const unsigned int site) const
     {
-      return !contact(slave)                   ? ContactStatus::open
-             : friction(slave) && stick(slave) ? ContactStatus::stick
-                                               : ContactStatus::slip;
+      return !contact(site)                  ? ContactStatus::open
+             : friction(site) && stick(site) ? ContactStatus::stick
+                                             : ContactStatus::slip;
     }
-    /// rho_n = h_n of the node's pair [pressure/length].
-    double normal_augmentation(const unsigned int slave) const
+    /// rho_n = h_n of the site's pair [pressure/length].
+    double normal_augmentation(const unsigned int site) const
     {
-      return normal_augmentation_[surfaces_.slave_nodes()[slave].pair];
+      return normal_augmentation_[surfaces_.pair(site)];
     }
     /// rho_tau = h_tau for a friction threshold: the friction traction is augmented as the normal one [1/length].
-    double tangential_augmentation(const unsigned int slave, const double threshold) const
+    double tangential_augmentation(const unsigned int site, const double threshold) const
     {
-      const unsigned int pair = surfaces_.slave_nodes()[slave].pair;
+      const unsigned int pair = surfaces_.pair(site);
       return pairs_[pair].tangential_augmentation_factor * normal_augmentation_[pair] /
              std::max(-threshold, threshold_floor_);
     }
 
     /// First pairing of the run: by gap, closed or open.
     void initialize(const Pairing &pairing, const std::vector<double> &distance);
-    /// Imposes the state of one node: S, S_f and mu lambda_s.
-    void assign(unsigned int slave, bool contact, bool stick, double threshold);
-    /// Nodes that lost their partner open.
+    /// Imposes the state of one site: S, S_f and mu lambda_s.
+    void assign(unsigned int site, bool contact, bool stick, double threshold);
+    /// Sites that lost their partner open.
     void inherit(const Pairing &pairing);
 
-    /// Freezes mu lambda_s from the weighted pressure; returns max|lambda - lambda_s| / max|lambda| and its node.
+    /// Freezes mu lambda_s from the weighted pressure; returns max|lambda - lambda_s| / max|lambda| and its site.
     struct Change
     {
       double       value = 0.;
-      unsigned int slave = dealii::numbers::invalid_unsigned_int;
+      unsigned int site  = dealii::numbers::invalid_unsigned_int;
     };
-    Change threshold_change(const std::vector<double> &weighted_pressure) const;
-    void   freeze_threshold(const std::vector<double> &weighted_pressure);
+    Change threshold_change(const std::vector<double> &site_pressure) const;
+    void   freeze_threshold(const std::vector<double> &site_pressure);
     /// True when a pair has friction at all.
     bool has_friction() const
     {
@@ -95,21 +119,23 @@ namespace Nodus
     {
       unsigned int              changes = 0;
       unsigned int              period  = 0;     ///< > 0: this status vector was visited that many passes ago
-      bool                      cycles  = false; ///< visited again although nodes change one at a time
-      std::vector<unsigned int> slaves;          ///< that changed
+      bool                      cycles  = false; ///< visited again although sites change one at a time
+      std::vector<unsigned int> sites;           ///< that changed
     };
-    /// Tests every node and changes those that contradict their status (eq. 2, 3, 7, 8). Once a status vector comes
-    /// back, only the contradicting node of lowest number changes in a pass: Murty's least-index rule, which is finite
-    /// for frictionless contact at frozen geometry where changing all nodes at once may cycle.
+    /// Tests every site and changes those that contradict their status (eq. 2, 3, 7, 8). Once a status vector comes
+    /// back, only the contradicting site of lowest number changes in a pass: Murty's least-index rule, which is finite
+    /// for frictionless contact at frozen geometry where changing all at once may cycle.
     Update update(const StatusInput &input);
 
-    unsigned int n_changes(const unsigned int slave) const
+    /// Empties the ledger, at the start of an increment.
+    void                begin_increment();
+    const StatusLedger &ledger(const unsigned int site) const
     {
-      return n_changes_[slave];
+      return ledger_[site];
     }
-    const std::array<double, 2> &accumulated_slip(const unsigned int slave) const
+    const std::array<double, 2> &accumulated_slip(const unsigned int site) const
     {
-      return now_.slip[slave];
+      return now_.slip[site];
     }
 
     /// The increment converged: adds its slip and keeps the state; or goes back to the last kept one.
@@ -131,7 +157,7 @@ namespace Nodus
     bool                                      has_friction_;
     State                                     now_, committed_;
     double                                    threshold_floor_ = 0.;
-    std::vector<unsigned int>                 n_changes_;
+    std::vector<StatusLedger>                 ledger_;
     std::vector<std::vector<char>>            visited_;
     bool                                      one_at_a_time_ = false;
   };

@@ -39,9 +39,17 @@ namespace Nodus
     unsigned int pair;
   };
 
+  /// An integration point of a slave face with statuses of its own (scheme `integration point`).
+  struct SlavePoint
+  {
+    unsigned int pair, face;      ///< face: index into slave_faces(pair)
+    double       xi, eta, weight; ///< of the rule on [0, 1]^2
+  };
+
   /// Values and derivatives of the face shape functions at one point.
   struct FaceShape
   {
+    unsigned int          n; ///< (degree+1)^2
     std::array<double, 9> value, d_xi, d_eta;
     FaceShape(unsigned int degree, double xi, double eta);
   };
@@ -74,6 +82,47 @@ namespace Nodus
     {
       return slave_nodes_;
     }
+    /// Integration points of the pairs that have that scheme, face by face.
+    const std::vector<SlavePoint> &slave_points() const
+    {
+      return slave_points_;
+    }
+    /// Contact sites are the places with a jump, a frame and statuses: first the slave nodes, then the integration
+    /// points.
+    unsigned int n_sites() const
+    {
+      return slave_nodes_.size() + slave_points_.size();
+    }
+    bool is_point(const unsigned int site) const
+    {
+      return site >= slave_nodes_.size();
+    }
+    const SlavePoint &point(const unsigned int site) const
+    {
+      return slave_points_[site - slave_nodes_.size()];
+    }
+    unsigned int pair(const unsigned int site) const
+    {
+      return is_point(site) ? point(site).pair : slave_nodes_[site].pair;
+    }
+    /// Slave nodes of a pair with integration points carry multipliers and frames, but no statuses.
+    bool has_status(const unsigned int site) const
+    {
+      return is_point(site) || !has_points_[slave_nodes_[site].pair];
+    }
+    bool has_points(const unsigned int pair) const
+    {
+      return has_points_[pair];
+    }
+    /// Rank that projects and assembles a site.
+    unsigned int site_owner(const unsigned int site) const
+    {
+      return is_point(site) ? slave_faces_[point(site).pair][point(site).face].owner
+                            : nodes_[slave_nodes_[site].node].owner;
+    }
+    /// Reference position of a site.
+    Point site_position(unsigned int site) const;
+
     /// Range [first, last) of slave nodes owned by this rank.
     std::pair<unsigned int, unsigned int> owned_slave_nodes() const
     {
@@ -116,6 +165,10 @@ namespace Nodus
     {
       return fixed_[node][component];
     }
+    const std::vector<std::array<bool, dim>> &fixed() const
+    {
+      return fixed_;
+    }
 
     /// x = X + u for all nodes.
     std::vector<Point> positions(const std::vector<Vector3> &u) const;
@@ -124,6 +177,8 @@ namespace Nodus
     unsigned int                          degree_;
     std::vector<SurfaceNode>              nodes_;
     std::vector<SlaveNode>                slave_nodes_;
+    std::vector<SlavePoint>               slave_points_;
+    std::vector<char>                     has_points_;
     std::vector<unsigned int>             slave_number_;
     std::pair<unsigned int, unsigned int> owned_range_;
     std::vector<std::vector<SurfaceFace>> slave_faces_, master_faces_;
@@ -140,6 +195,8 @@ namespace Nodus
     Point   x;
     Vector3 d_xi, d_eta;
     FaceGeometry(const SurfaceFace &face, const FaceShape &shape, const std::vector<Point> &positions);
+    /// @p points: as many positions as the shape has functions.
+    FaceGeometry(const FaceShape &shape, const Point *points);
     /// x_xi x x_eta, length = surface element.
     Vector3 area_vector() const;
   };

@@ -16,6 +16,7 @@ namespace Nodus
     std::vector<Point>         X;                ///< reference position
     std::vector<Vector3>       displacement;     ///<
     std::vector<double>        pressure;         ///< CPRESS = -lambda_bar >= 0 in compression [pressure]
+    std::vector<double>        multiplier;       ///< lambda_j, the unknown itself [pressure]
     std::vector<double>        gap;              ///< COPEN = -d_n [length]
     std::vector<Vector3>       friction;         ///< friction traction on the slave, global axes [pressure]
     std::vector<double>        shear[2];         ///< CSHEAR1, CSHEAR2: friction in the tangent frame [pressure]
@@ -24,6 +25,10 @@ namespace Nodus
     std::vector<Vector3>       normal, tangent1; ///< unit, from slave to master
     std::vector<double>        area;             ///< m_j [area]
     std::vector<char>          paired;           ///< 0: no master found
+    std::vector<unsigned int>
+        status_changes;                     ///< of the increment; integration point scheme: sum over the points around
+    std::vector<unsigned int> cycle_period; ///< of the longest status cycle the node took part in; 0: none
+    std::vector<char> contradiction;        ///< last one: 0 none, 1 tension, 2 penetration, 3 over cone, 4 against slip
 
     /// Slave faces: (degree+1)^2 indices into the arrays above, lexicographic (first local coordinate fastest);
     /// replicated, face f is written by rank face_owner[f].
@@ -38,7 +43,9 @@ namespace Nodus
     std::string  name;
     Vector3      slave_force, slave_moment, master_force, master_moment;
     double       contact_area = 0., maximum_pressure = 0.;
-    unsigned int open = 0, slip = 0, stick = 0, unpaired = 0;
+    unsigned int open = 0, slip = 0, stick = 0, unpaired = 0; ///< contact sites: nodes or integration points
+    /// Status changes of the increment: all, by what contradicted the status (the four kinds), longest cycle.
+    unsigned int status_changes = 0, contradictions[4] = {0, 0, 0, 0}, longest_cycle = 0;
   };
 
   /// Iterations spent on one increment.

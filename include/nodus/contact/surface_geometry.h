@@ -1,0 +1,77 @@
+#ifndef nodus_contact_surface_geometry_h
+#define nodus_contact_surface_geometry_h
+
+#include <nodus/contact/surface.h>
+#include <nodus/parameters.h>
+
+#include <array>
+#include <vector>
+
+namespace Nodus
+{
+  /// Shape of the faces of one side at given positions, with normals averaged at the nodes.
+  ///
+  /// Faces of degree 1 may be smoothed: the middle of each edge moves onto the circular arc that meets the averaged
+  /// normals of its ends, which makes the face an eight-node quadratic one (after Nagata 2005, whose patch is the same
+  /// to fourth order in the angle). Faces of degree 2 are quadratic already and stay.
+  class SurfaceGeometry
+  {
+  public:
+    /// @p fixed: prescribed components of each node. A node that is held in some but not all directions lies on a plane
+    /// of symmetry, and its averaged normal lies in that plane.
+    SurfaceGeometry(const std::vector<SurfaceFace>           &faces,
+                    unsigned int                              degree,
+                    const std::vector<Point>                 &positions,
+                    const std::vector<std::array<bool, dim>> &fixed,
+                    ContactPairParameters::Surface            surface);
+
+    unsigned int n_faces() const
+    {
+      return faces_.size();
+    }
+    const SurfaceFace &face(const unsigned int f) const
+    {
+      return faces_[f];
+    }
+    /// Degree of the displacement.
+    unsigned int degree() const
+    {
+      return degree_;
+    }
+    const std::vector<Point> &positions() const
+    {
+      return positions_;
+    }
+
+    FaceGeometry at(const unsigned int f, const double xi, const double eta) const
+    {
+      const FaceShape shape(shape_degree_, xi, eta);
+      return FaceGeometry(shape, points_.data() + f * shape.n);
+    }
+    /// Outward unit normal of the face.
+    Vector3 normal(unsigned int f, double xi, double eta) const;
+    /// Outward unit normal interpolated from the averaged ones of the nodes.
+    Vector3 averaged_normal(unsigned int f, double xi, double eta) const;
+    /// Smoothed position minus the one that the displacement shape functions give; zero when faceted.
+    Vector3 offset(unsigned int f, double xi, double eta) const;
+
+    /// Averaged outward unit normal of node @p n of face @p f: of the faces at the node within 45 degrees of this one,
+    /// with weights that make it exact on spheres and cylinders (Max 1999).
+    const Vector3 &nodal_normal(const unsigned int f, const unsigned int n) const
+    {
+      return nodal_normals_[f * faces_[f].nodes.size() + n];
+    }
+
+  private:
+    const std::vector<SurfaceFace> &faces_;
+    const std::vector<Point>       &positions_;
+    unsigned int                    degree_, shape_degree_;
+    std::vector<Vector3>            nodal_normals_; ///< per face and node
+    std::vector<Point>              points_;        ///< per face, (shape_degree + 1)^2
+
+    void average_normals(const std::vector<std::array<bool, dim>> &fixed);
+    void smooth();
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,72 @@
+#ifndef nodus_parameter_keys_h
+#define nodus_parameter_keys_h
+
+#include <nodus/parameters.h>
+
+#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/patterns.h>
+
+#include <limits>
+
+// What the files that declare the keys of a .prm file share.
+
+namespace Nodus
+{
+  namespace ParameterKeys
+  {
+    namespace Patterns = dealii::Patterns;
+    using dealii::ParameterHandler;
+
+    /// The texts of an enum in the .prm file. This is the only place where they are written.
+    template <typename Enum>
+    using Names = std::vector<std::pair<Enum, std::string>>;
+
+    template <typename Enum>
+    std::string selection(const Names<Enum> &names)
+    {
+      std::string texts;
+      for (const auto &[value, text] : names)
+        texts += (texts.empty() ? "" : "|") + text;
+      return texts;
+    }
+
+    template <typename Enum>
+    Enum value_of(const std::string &wanted, const Names<Enum> &names)
+    {
+      for (const auto &[value, text] : names)
+        if (text == wanted)
+          return value;
+      throw InputError("'" + wanted + "' is none of " + selection(names)); // kept out by the pattern
+    }
+
+    template <typename Enum>
+    void add_choice(ParameterHandler  &prm,
+                    const std::string &key,
+                    Enum              &value,
+                    const Names<Enum> &names,
+                    const std::string &documentation)
+    {
+      std::string default_text;
+      for (const auto &[candidate, text] : names)
+        if (candidate == value)
+          default_text = text;
+      prm.declare_entry(key, default_text, Patterns::Selection(selection(names)), documentation);
+      prm.add_action(key, [&value, &names](const std::string &text) { value = value_of(text, names); });
+    }
+
+    inline const Patterns::Double  any_number, not_negative(0.), positive(std::numeric_limits<double>::min());
+    inline const Patterns::Integer count(0), at_least_one(1);
+    inline const Patterns::List    ids(Patterns::Integer(0), 0, std::numeric_limits<unsigned int>::max(), ",");
+
+    /// Keys "Body", "Boundary ids", "Where" behind @p prefix, which is "Slave ", "Master " or empty.
+    void add_region(ParameterHandler  &prm,
+                    const std::string &prefix,
+                    RegionParameters  &region,
+                    const std::string &every_body,
+                    const std::string &where);
+
+    void add_contact_pair(ParameterHandler &prm, ContactPairParameters &pair);
+  } // namespace ParameterKeys
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,261 @@
+#include <nodus/contact/averaged_jump.h>
+#include <nodus/contact/face_rule.h>
+#include <nodus/contact/segments.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+
+namespace Nodus
+{
+  namespace
+  {
+    using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 9, 9>;
+    using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 9, 1>;
+
+    /// Covered fraction of a face at which psi starts to turn from the hats to the dual functions. The dual functions
+    /// of a quadratic face keep positive integrals down to here.
+    constexpr double dual_coverage = 0.75;
+    /// Less of the node's surface than this has no partner worth a constraint.
+    constexpr double smallest_coverage = 1e-2;
+    /// Entries of the slave part below this are round-off of the biorthogonality.
+    constexpr double smallest_entry = 1e-13;
+
+    /// What a slave face adds to the rows of its nodes, before the division by the area.
+    struct FaceRows
+    {
+      unsigned int              pair, face;
+      std::vector<unsigned int> nodes;   ///< slave nodes of the face, then master nodes
+      std::vector<double>       weights; ///< per slave node of the face: weight of each node, area, full area
+      std::vector<double>       vectors; ///< per slave node of the face: offset, normal
+
+      template <typename Archive>
+      void serialize(Archive &archive, const unsigned int)
+      {
+        archive &pair &face &nodes &weights &vectors;
+      }
+    };
+
+    /// Bilinear hats of the nodes: on the face, or on the quarters of one of degree 2.
+    Column hats(const unsigned int degree, const double xi, const double eta)
+    {
+      double s[2][3];
+      for (unsigned int d = 0; d < 2; ++d)
+        for (unsigned int i = 0; i <= degree; ++i)
+          s[d][i] = std::max(0., 1. - std::abs(degree * (d == 0 ? xi : eta) - i));
+      Column result((degree + 1) * (degree + 1));
+      for (unsigned int j = 0, n = 0; j <= degree; ++j)
+        for (unsigned int i = 0; i <= degree; ++i, ++n)
+          result[n] = s[0][i] * s[1][j];
+      return result;
+    }
+
+    /// Points of a fixed rule with their closest master points; returns the covered fraction.
+    double face_points(const SurfaceGeometry       &slave,
+                       const unsigned int           f,
+                       const dealii::Quadrature<2> &rule,
+                       const MasterSearch          &search,
+                       const double                 reach,
+                       const double                 tolerance,
+                       std::vector<MortarPoint>    &points)
+    {
+      points.clear();
+      double area = 0., covered = 0.;
+      for (unsigned int q = 0; q < rule.size(); ++q)
+      {
+        const double       xi = rule.point(q)[0], eta = rule.point(q)[1];
+        const FaceGeometry geometry = slave.at(f, xi, eta);
+        const double       part     = rule.weight(q) * geometry.area_vector().norm();
+        area += part;
+        const Projection master = search.closest(geometry.x, slave.normal(f, xi, eta), reach, tolerance);
+        if (!master.found())
+          continue;
+        covered += part;
+        points.push_back({xi, eta, rule.weight(q), master});
+      }
+      return covered / area;
+    }
+
+    /// Integrates one face.
+    FaceRows integrate(const ContactPairParameters    &pair,
+                       const SurfaceGeometry          &slave,
+                       const unsigned int              f,
+                       const SurfaceGeometry          &master,
+                       const std::vector<MortarPoint> &points,
+                       const double                    coverage,
+                       const std::vector<Point>       &measure)
+    {
+      const unsigned int degree = slave.degree(), n = (degree + 1) * (degree + 1);
+      const SurfaceFace &face = slave.face(f);
+      FaceRows           result{0, f, face.nodes, {}, {}};
+      for (const MortarPoint &point : points)
+        for (const unsigned int node : master.face(point.master.face).nodes)
+          if (std::find(result.nodes.begin() + n, result.nodes.end(), node) == result.nodes.end())
+            result.nodes.push_back(node);
+
+      // psi = (part D M^-1 + (1 - part) hats-to-phi) ... evaluated point by point from the matrices of the face
+      Matrix              mass = Matrix::Zero(n, n);
+      Column              area = Column::Zero(n);
+      std::vector<double> weight(points.size());
+      for (unsigned int q = 0; q < points.size(); ++q)
+      {
+        const FaceShape shape(degree, points[q].xi, points[q].eta);
+        weight[q] = points[q].weight * FaceGeometry(face, shape, measure).area_vector().norm();
+        const Eigen::Map<const Column> phi(shape.value.data(), n);
+        mass += weight[q] * phi * phi.transpose();
+        area += weight[q] * phi;
+      }
+      const double part = std::clamp((coverage - dual_coverage) / (1. - dual_coverage - 1e-8), 0., 1.);
+      Matrix       dual = Matrix::Zero(n, n);
+      if (part > 0.)
+        dual = part * (mass.ldlt().solve(Matrix(area.asDiagonal()))).transpose();
+
+      const unsigned int n_columns = result.nodes.size() + 2;
+      result.weights.assign(n * n_columns, 0.);
+      result.vectors.assign(6 * n, 0.);
+      for (unsigned int q = 0; q < points.size(); ++q)
+      {
+        const MortarPoint             &point = points[q];
+        const FaceShape                shape(degree, point.xi, point.eta);
+        const FaceShape                master_shape(degree, point.master.xi, point.master.eta);
+        const SurfaceFace             &master_face = master.face(point.master.face);
+        const Eigen::Map<const Column> phi(shape.value.data(), n);
+        const Column                   hat = hats(degree, point.xi, point.eta);
+        const Column                   psi = weight[q] * (dual * phi + (1. - part) * hat);
+        const Vector3                  offset =
+            slave.offset(f, point.xi, point.eta) - master.offset(point.master.face, point.master.xi, point.master.eta);
+        const Vector3 normal = pair.normal == ContactPairParameters::Normal::slave
+                                   ? slave.averaged_normal(f, point.xi, point.eta)
+                               : pair.normal == ContactPairParameters::Normal::averaged
+                                   ? -master.averaged_normal(point.master.face, point.master.xi, point.master.eta)
+                                   : -master.normal(point.master.face, point.master.xi, point.master.eta);
+        unsigned int  column[9];
+        for (unsigned int b = 0; b < n; ++b)
+          column[b] =
+              std::find(result.nodes.begin() + n, result.nodes.end(), master_face.nodes[b]) - result.nodes.begin();
+        for (unsigned int a = 0; a < n; ++a)
+        {
+          double *const row = result.weights.data() + a * n_columns;
+          for (unsigned int b = 0; b < n; ++b)
+          {
+            row[b] += psi[a] * shape.value[b];
+            row[column[b]] -= psi[a] * master_shape.value[b];
+          }
+          row[n_columns - 2] += psi[a];
+          for (unsigned int c = 0; c < dim; ++c)
+          {
+            result.vectors[6 * a + c] += psi[a] * offset[c];
+            result.vectors[6 * a + 3 + c] += weight[q] * hat[a] * normal[c];
+          }
+        }
+      }
+      for (unsigned int a = 0; a < n; ++a)
+        result.weights[(a + 1) * n_columns - 1] =
+            coverage > 0. ? result.weights[(a + 1) * n_columns - 2] / coverage : 0.;
+      return result;
+    }
+
+    void add(std::vector<AveragedJump::Entry> &entries, const unsigned int node, const double weight)
+    {
+      for (auto &entry : entries)
+        if (entry.node == node)
+        {
+          entry.weight += weight;
+          return;
+        }
+      entries.push_back({node, weight});
+    }
+  } // namespace
+
+  void AveragedJump::compute(const std::vector<ContactPairParameters> &pairs,
+                             const ContactSurfaces                    &surfaces,
+                             const ContactGeometry                    &geometry,
+                             const std::vector<Point>                 &x,
+                             const std::vector<Point>                 &X)
+  {
+    rows_.assign(surfaces.slave_nodes().size(), Row());
+    const MPI_Comm     communicator = surfaces.layout().communicator;
+    const unsigned int rank         = dealii::Utilities::MPI::this_mpi_process(communicator);
+
+    std::vector<FaceRows>    mine;
+    std::vector<MortarPoint> points;
+    bool                     any = false;
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+    {
+      if (pairs[p].scheme != ContactPairParameters::Scheme::averaged)
+        continue;
+      any                  = true;
+      const bool  segments = pairs[p].integration == ContactPairParameters::Integration::segment;
+      const auto  rule     = face_rule(pairs[p], surfaces.degree());
+      const auto &measure  = pairs[p].surface_measure == ContactPairParameters::SurfaceMeasure::current ? x : X;
+      for (unsigned int f = 0; f < geometry.slave[p].n_faces(); ++f)
+      {
+        if (geometry.slave[p].face(f).owner != rank)
+          continue;
+        const double coverage =
+            segments ? segment_points(
+                           geometry.slave[p], f, geometry.master[p], geometry.search[p], geometry.reach[p], points)
+                     : face_points(geometry.slave[p],
+                                   f,
+                                   rule,
+                                   geometry.search[p],
+                                   geometry.reach[p],
+                                   pairs[p].projection_tolerance,
+                                   points);
+        mine.push_back(integrate(pairs[p], geometry.slave[p], f, geometry.master[p], points, coverage, measure));
+        mine.back().pair = p;
+      }
+    }
+    if (!any)
+      return;
+
+    // Sums over the faces of a node, in an order that does not depend on the ranks.
+    const unsigned int  n = (surfaces.degree() + 1) * (surfaces.degree() + 1);
+    std::vector<double> full(rows_.size(), 0.);
+    for (const auto &part : dealii::Utilities::MPI::all_gather(communicator, mine))
+      for (const FaceRows &face : part)
+      {
+        const unsigned int n_columns = face.nodes.size() + 2;
+        for (unsigned int a = 0; a < n; ++a)
+        {
+          const unsigned int  k   = surfaces.slave_number(face.nodes[a]);
+          Row                &row = rows_[k];
+          const double *const w   = face.weights.data() + a * n_columns;
+          for (unsigned int b = 0; b < face.nodes.size(); ++b)
+            if (w[b] != 0.)
+              add(b < n ? row.slave : row.master, face.nodes[b], w[b]);
+          row.area += w[n_columns - 2];
+          full[k] += w[n_columns - 1];
+          for (unsigned int c = 0; c < dim; ++c)
+          {
+            row.offset[c] += face.vectors[6 * a + c];
+            row.normal[c] += face.vectors[6 * a + 3 + c];
+          }
+        }
+      }
+
+    for (unsigned int k = 0; k < rows_.size(); ++k)
+    {
+      Row &row = rows_[k];
+      if (!(row.area > smallest_coverage * full[k]))
+      {
+        row = Row();
+        continue;
+      }
+      for (auto *const entries : {&row.slave, &row.master})
+      {
+        for (Entry &entry : *entries)
+          entry.weight /= row.area;
+        entries->erase(std::remove_if(entries->begin(),
+                                      entries->end(),
+                                      [](const Entry &e) { return std::abs(e.weight) < smallest_entry; }),
+                       entries->end());
+        std::sort(entries->begin(), entries->end(), [](const Entry &a, const Entry &b) { return a.node < b.node; });
+      }
+      row.offset /= row.area;
+      row.normal /= row.normal.norm();
+    }
+  }
+} // namespace Nodus

@@ -1,0 +1,179 @@
+#include <nodus/contact/contact_geometry.h>
+
+#include <deal.II/numerics/rtree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace Nodus
+{
+  namespace
+  {
+    /// Master faces looking along the slave's outward normal (cosine above this) are the far side of a body.
+    constexpr double far_side_cosine = 0.5;
+
+    double squared_distance(const dealii::BoundingBox<dim> &box, const Point &p)
+    {
+      double d2 = 0;
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        const double d = std::max({box.lower_bound(c) - p[c], 0., p[c] - box.upper_bound(c)});
+        d2 += d * d;
+      }
+      return d2;
+    }
+  } // namespace
+
+  struct MasterSearch::Tree
+  {
+    using Leaf = std::pair<dealii::BoundingBox<dim>, unsigned int>;
+    decltype(dealii::pack_rtree(std::vector<Leaf>())) leaves;
+  };
+
+  MasterSearch::MasterSearch(const SurfaceGeometry &master)
+      : master_(master)
+      , tree_(std::make_unique<Tree>())
+      , on_rim_(master.n_faces())
+  {
+    const unsigned int degree = master.degree();
+    const auto         edge   = [&](const SurfaceFace &face, const unsigned int e)
+    {
+      const unsigned int n = degree + 1, last = n * n - 1;
+      const unsigned int ends[4][2] = {{0, n * degree}, {degree, last}, {0, degree}, {n * degree, last}};
+      return std::make_pair(std::min(face.nodes[ends[e][0]], face.nodes[ends[e][1]]),
+                            std::max(face.nodes[ends[e][0]], face.nodes[ends[e][1]]));
+    };
+    std::map<std::pair<unsigned int, unsigned int>, unsigned int> count;
+    for (unsigned int f = 0; f < master.n_faces(); ++f)
+      for (unsigned int e = 0; e < 4; ++e)
+        ++count[edge(master.face(f), e)];
+
+    std::vector<Tree::Leaf> leaves;
+    for (unsigned int f = 0; f < master.n_faces(); ++f)
+    {
+      for (unsigned int e = 0; e < 4; ++e)
+        on_rim_[f][e] = count[edge(master.face(f), e)] == 1;
+      const double area = master.at(f, 0.5, 0.5).area_vector().norm();
+      centre_normal_.push_back(master.normal(f, 0.5, 0.5));
+      size_.push_back(std::sqrt(area));
+      std::vector<Point> corners;
+      for (const unsigned int n : master.face(f).nodes)
+        corners.push_back(master.positions()[n]);
+      corners.push_back(master.at(f, 0.5, 0.5).x);
+      dealii::BoundingBox<dim> box(corners);
+      // a quadratic or smoothed face may bulge beyond the box of its nodes by an eighth of its size
+      box.extend(size_.back() / 8);
+      leaves.emplace_back(box, f);
+    }
+    tree_->leaves = dealii::pack_rtree(leaves);
+  }
+
+  MasterSearch::~MasterSearch()                        = default;
+  MasterSearch::MasterSearch(MasterSearch &&) noexcept = default;
+
+  Projection
+  MasterSearch::closest(const Point &p, const Vector3 &slave_normal, const double reach, const double tolerance) const
+  {
+    namespace bgi = boost::geometry::index;
+    Projection best;
+    double     best_distance = reach * reach;
+    for (auto leaf = tree_->leaves.qbegin(bgi::nearest(p, master_.n_faces())); leaf != tree_->leaves.qend(); ++leaf)
+    {
+      if (squared_distance(leaf->first, p) > best_distance)
+        break; // boxes come in ascending distance
+      const unsigned int f = leaf->second;
+      if (centre_normal_[f] * slave_normal > far_side_cosine)
+        continue;
+      double       xi, eta;
+      const double d2 = closest_point(master_, f, p, xi, eta);
+      // neighbours share an edge point: the lower face index decides, on every rank alike
+      const double tie = 1e-12 * size_[f] * size_[f];
+      if (d2 < best_distance - tie || (d2 < best_distance + tie && f < best.face))
+      {
+        best_distance = std::min(d2, best_distance);
+        best          = {f, xi, eta};
+      }
+    }
+    if (!best.found())
+      return best;
+
+    // A point beyond the rim of the master surface has no partner, but for a small overhang.
+    const auto &rim = on_rim_[best.face];
+    if ((best.xi <= 0. && rim[0]) || (best.xi >= 1. && rim[1]) || (best.eta <= 0. && rim[2]) ||
+        (best.eta >= 1. && rim[3]))
+    {
+      const Vector3 n = master_.normal(best.face, best.xi, best.eta);
+      const Vector3 r = p - master_.at(best.face, best.xi, best.eta).x;
+      if ((r - (r * n) * n).norm() > tolerance * size_[best.face])
+        return Projection();
+    }
+    return best;
+  }
+
+  void MasterSearch::candidates(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &faces) const
+  {
+    namespace bgi = boost::geometry::index;
+    faces.clear();
+    for (auto leaf = tree_->leaves.qbegin(bgi::intersects(box)); leaf != tree_->leaves.qend(); ++leaf)
+      faces.push_back(leaf->second);
+    std::sort(faces.begin(), faces.end());
+  }
+
+  ContactGeometry::ContactGeometry(const std::vector<ContactPairParameters> &pairs,
+                                   const ContactSurfaces                    &surfaces,
+                                   const std::vector<Point>                 &positions)
+  {
+    slave.reserve(pairs.size());
+    master.reserve(pairs.size()); // the searches refer to the masters
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+    {
+      slave.emplace_back(surfaces.slave_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
+      master.emplace_back(surfaces.master_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
+      search.emplace_back(master[p]);
+      // automatic: a quarter of the diagonal of the master surface
+      std::vector<Point> corners;
+      for (const auto &face : surfaces.master_faces(p))
+        for (const unsigned int n : face.nodes)
+          corners.push_back(positions[n]);
+      const auto ends = dealii::BoundingBox<dim>(corners).get_boundary_points();
+      reach.push_back(pairs[p].search_distance > 0. ? pairs[p].search_distance
+                                                    : 0.25 * ends.first.distance(ends.second));
+    }
+  }
+
+  double closest_point(const SurfaceGeometry &surface, const unsigned int f, const Point &p, double &xi, double &eta)
+  {
+    xi = eta = 0.5;
+    for (unsigned int iteration = 0; iteration < 50; ++iteration)
+    {
+      const FaceGeometry geometry = surface.at(f, xi, eta);
+      const Vector3      r        = p - geometry.x;
+      const double       g[2]     = {r * geometry.d_xi, r * geometry.d_eta};
+      // Gauss-Newton metric: safe far from the face, exact on a plane one
+      const double a = geometry.d_xi * geometry.d_xi, b = geometry.d_xi * geometry.d_eta,
+                   c      = geometry.d_eta * geometry.d_eta;
+      const bool hold_xi  = (xi <= 0. && g[0] <= 0.) || (xi >= 1. && g[0] >= 0.);
+      const bool hold_eta = (eta <= 0. && g[1] <= 0.) || (eta >= 1. && g[1] >= 0.);
+      double     step_xi = 0., step_eta = 0.;
+      if (!hold_xi && !hold_eta)
+      {
+        const double det = a * c - b * b;
+        step_xi          = (c * g[0] - b * g[1]) / det;
+        step_eta         = (a * g[1] - b * g[0]) / det;
+      }
+      else if (!hold_xi)
+        step_xi = g[0] / a;
+      else if (!hold_eta)
+        step_eta = g[1] / c;
+      const double new_xi = std::clamp(xi + step_xi, 0., 1.), new_eta = std::clamp(eta + step_eta, 0., 1.);
+      const double change = std::max(std::abs(new_xi - xi), std::abs(new_eta - eta));
+      xi                  = new_xi;
+      eta                 = new_eta;
+      if (change < 1e-14)
+        break;
+    }
+    return (p - surface.at(f, xi, eta).x).norm_square();
+  }
+
+} // namespace Nodus

@@ -1,0 +1,49 @@
+#include <nodus/contact/face_rule.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+namespace Nodus
+{
+  namespace
+  {
+    /// Closed rule with n equidistant points; n as Parameters::check allows.
+    dealii::Quadrature<1> newton_cotes(const unsigned int n)
+    {
+      switch (n)
+      {
+        case 2:
+          return dealii::QTrapezoid<1>();
+        case 3:
+          return dealii::QSimpson<1>();
+        case 4: // Simpson's 3/8 rule
+          return {{dealii::Point<1>(0.), dealii::Point<1>(1. / 3), dealii::Point<1>(2. / 3), dealii::Point<1>(1.)},
+                  {1. / 8, 3. / 8, 3. / 8, 1. / 8}};
+        case 5:
+          return dealii::QMilne<1>();
+        default:
+          return dealii::QWeddle<1>();
+      }
+    }
+  } // namespace
+
+  dealii::Quadrature<2> face_rule(const ContactPairParameters &pair, const unsigned int degree)
+  {
+    using Rule          = ContactPairParameters::QuadratureRule;
+    const bool   points = pair.scheme == ContactPairParameters::Scheme::integration_point;
+    const bool   gauss  = pair.quadrature_rule == Rule::gauss;
+    unsigned int n      = pair.quadrature_points;
+    if (n == 0 && points)
+      n = gauss ? degree + 1 : 2 * degree + 1;
+    else if (n == 0)
+      n = gauss ? 6 : 7; // both within 1 % on the non-matching patch test
+    switch (pair.quadrature_rule)
+    {
+      case Rule::gauss:
+        return dealii::QGauss<2>(n);
+      case Rule::simpson:
+        return dealii::Quadrature<2>(dealii::QIterated<1>(dealii::QSimpson<1>(), (n - 1) / 2));
+      default:
+        return dealii::Quadrature<2>(newton_cotes(n));
+    }
+  }
+} // namespace Nodus

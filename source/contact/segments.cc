@@ -1,0 +1,242 @@
+#include <nodus/contact/segments.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace Nodus
+{
+  namespace
+  {
+    using Point2 = dealii::Point<2>;
+
+    /// Faces that look away from each other less than this (cosine) do not overlap.
+    constexpr double facing_cosine = 0.1;
+    /// Overlaps below this fraction of a slave cell are round-off.
+    constexpr double smallest_overlap = 1e-10;
+
+    double cross(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
+    {
+      return a[0] * b[1] - a[1] * b[0];
+    }
+
+    /// Plane through a slave cell: its outward normal and two axes.
+    struct Plane
+    {
+      Point   origin;
+      Vector3 normal, axis[2];
+
+      Point2 operator()(const Point &x) const
+      {
+        return Point2((x - origin) * axis[0], (x - origin) * axis[1]);
+      }
+    };
+
+    /// A convex polygon; two quadrilaterals overlap in at most eight corners.
+    struct Polygon
+    {
+      std::array<Point2, 16> corner;
+      unsigned int           n = 0;
+
+      void add(const Point2 &p)
+      {
+        corner[n++] = p;
+      }
+      double area() const
+      {
+        double twice = 0.;
+        for (unsigned int i = 2; i < n; ++i)
+          twice += cross(corner[i - 1] - corner[0], corner[i] - corner[0]);
+        return 0.5 * twice;
+      }
+      void make_counterclockwise()
+      {
+        if (area() < 0.)
+          std::reverse(corner.begin(), corner.begin() + n);
+      }
+    };
+
+    /// The part of @p polygon inside the convex @p window (Sutherland & Hodgman 1974).
+    Polygon clip(Polygon polygon, const Polygon &window)
+    {
+      for (unsigned int e = 0; e < window.n && polygon.n > 0; ++e)
+      {
+        const Point2 &a = window.corner[e], &b = window.corner[(e + 1) % window.n];
+        const auto    inside = [&](const Point2 &p) { return cross(b - a, p - a); };
+        Polygon       rest;
+        for (unsigned int i = 0; i < polygon.n && rest.n + 2 < rest.corner.size(); ++i)
+        {
+          const Point2 &p = polygon.corner[i], &q = polygon.corner[(i + 1) % polygon.n];
+          const double  s = inside(p), t = inside(q);
+          if (s >= 0.)
+            rest.add(p);
+          if ((s > 0. && t < 0.) || (s < 0. && t > 0.))
+            rest.add(p + s / (s - t) * (q - p));
+        }
+        polygon = rest;
+      }
+      return polygon;
+    }
+
+    /// The cells of a face that are clipped: the face itself, or the quarters of one of degree 2.
+    unsigned int n_cells(const unsigned int degree)
+    {
+      return degree * degree;
+    }
+    std::array<Point, 4> cell_corners(const SurfaceGeometry &surface, const unsigned int f, const unsigned int cell)
+    {
+      const unsigned int degree = surface.degree(), n = degree + 1;
+      const unsigned int first = cell % degree + n * (cell / degree);
+      const auto        &nodes = surface.face(f).nodes;
+      const auto        &x     = surface.positions();
+      return {{x[nodes[first]], x[nodes[first + 1]], x[nodes[first + 1 + n]], x[nodes[first + n]]}};
+    }
+    Vector3 cell_normal(const std::array<Point, 4> &corner, const double orientation)
+    {
+      const Vector3 area = dealii::cross_product_3d(corner[2] - corner[0], corner[3] - corner[1]);
+      return orientation / area.norm() * area;
+    }
+
+    /// Local coordinates of the point of face @p f that the plane sees at @p p.
+    bool invert(const SurfaceGeometry &surface,
+                const unsigned int     f,
+                const Plane           &plane,
+                const Point2          &p,
+                double                &xi,
+                double                &eta)
+    {
+      for (unsigned int iteration = 0; iteration < 20; ++iteration)
+      {
+        const FaceGeometry geometry(surface.face(f), FaceShape(surface.degree(), xi, eta), surface.positions());
+        const auto         r = p - plane(geometry.x);
+        const double       a = geometry.d_xi * plane.axis[0], b = geometry.d_eta * plane.axis[0],
+                     c = geometry.d_xi * plane.axis[1], d = geometry.d_eta * plane.axis[1];
+        const double det     = a * d - b * c;
+        const double step_xi = (d * r[0] - b * r[1]) / det, step_eta = (a * r[1] - c * r[0]) / det;
+        xi += step_xi;
+        eta += step_eta;
+        if (!(std::abs(xi) + std::abs(eta) < 10.))
+          return false;
+        if (std::abs(step_xi) + std::abs(step_eta) < 1e-13)
+          return true;
+      }
+      return false;
+    }
+  } // namespace
+
+  double segment_points(const SurfaceGeometry    &slave,
+                        const unsigned int        f,
+                        const SurfaceGeometry    &master,
+                        const MasterSearch       &search,
+                        const double              reach,
+                        std::vector<MortarPoint> &points)
+  {
+    // the product of two shape functions has total degree 4 (Q1) or 8 (Q2)
+    static const dealii::Quadrature<2> rules[] = {dealii::QWitherdenVincentSimplex<2>(3, false),
+                                                  dealii::QWitherdenVincentSimplex<2>(5, false)};
+    const unsigned int                 degree  = slave.degree();
+    const auto                        &rule    = rules[degree - 1];
+
+    thread_local std::vector<unsigned int> candidates;
+    points.clear();
+    double face_area = 0., covered = 0.;
+    for (unsigned int cell = 0; cell < n_cells(degree); ++cell)
+    {
+      const auto corner = cell_corners(slave, f, cell);
+      Plane      plane;
+      plane.normal  = cell_normal(corner, slave.face(f).orientation);
+      plane.origin  = corner[0];
+      plane.axis[0] = corner[1] - corner[0];
+      plane.axis[0] -= (plane.axis[0] * plane.normal) * plane.normal;
+      plane.axis[0] /= plane.axis[0].norm();
+      plane.axis[1] = dealii::cross_product_3d(plane.normal, plane.axis[0]);
+
+      Polygon window;
+      Point2  low = plane(corner[0]), high = low;
+      for (const Point &x : corner)
+      {
+        const Point2 p = plane(x);
+        window.add(p);
+        for (unsigned int c = 0; c < 2; ++c)
+        {
+          low[c]  = std::min(low[c], p[c]);
+          high[c] = std::max(high[c], p[c]);
+        }
+      }
+      window.make_counterclockwise();
+      const double cell_area = window.area();
+      face_area += cell_area;
+
+      // the cell swept along its normal
+      std::vector<Point> swept;
+      for (const Point &x : corner)
+      {
+        swept.push_back(x + reach * plane.normal);
+        swept.push_back(x - reach * plane.normal);
+      }
+      search.candidates(dealii::BoundingBox<dim>(swept), candidates);
+
+      for (const unsigned int m : candidates)
+        for (unsigned int master_cell = 0; master_cell < n_cells(degree); ++master_cell)
+        {
+          const auto master_corner = cell_corners(master, m, master_cell);
+          if (cell_normal(master_corner, master.face(m).orientation) * plane.normal > -facing_cosine)
+            continue;
+          Polygon polygon;
+          Point2  master_low = plane(master_corner[0]), master_high = master_low;
+          for (const Point &x : master_corner)
+          {
+            const Point2 p = plane(x);
+            polygon.add(p);
+            for (unsigned int c = 0; c < 2; ++c)
+            {
+              master_low[c]  = std::min(master_low[c], p[c]);
+              master_high[c] = std::max(master_high[c], p[c]);
+            }
+          }
+          if (master_low[0] > high[0] || master_high[0] < low[0] || master_low[1] > high[1] || master_high[1] < low[1])
+            continue;
+          polygon.make_counterclockwise();
+          polygon = clip(polygon, window);
+          if (polygon.n < 3 || polygon.area() < smallest_overlap * cell_area)
+            continue;
+
+          double xi = (cell % degree + 0.5) / degree, eta = (cell / degree + 0.5) / degree;
+          double master_xi = (master_cell % degree + 0.5) / degree, master_eta = (master_cell / degree + 0.5) / degree;
+          for (unsigned int t = 2; t < polygon.n; ++t)
+          {
+            const auto   a = polygon.corner[t - 1] - polygon.corner[0], b = polygon.corner[t] - polygon.corner[0];
+            const double twice_area = cross(a, b);
+            for (unsigned int q = 0; q < rule.size(); ++q)
+            {
+              const Point2 p = polygon.corner[0] + rule.point(q)[0] * a + rule.point(q)[1] * b;
+              if (!invert(slave, f, plane, p, xi, eta))
+              {
+                points.clear();
+                return 0.; // the face is folded over: no partner
+              }
+              if (!invert(master, m, plane, p, master_xi, master_eta))
+              {
+                master_xi  = (master_cell % degree + 0.5) / degree;
+                master_eta = (master_cell / degree + 0.5) / degree;
+                continue;
+              }
+              const FaceGeometry geometry(slave.face(f), FaceShape(degree, xi, eta), slave.positions());
+              const Vector3      gap =
+                  FaceGeometry(master.face(m), FaceShape(degree, master_xi, master_eta), master.positions()).x -
+                  geometry.x;
+              if (gap.norm() > reach)
+                continue;
+              const double plane_area = std::abs(geometry.area_vector() * plane.normal);
+              const double area       = twice_area * rule.weight(q);
+              points.push_back({xi, eta, area / plane_area, {m, master_xi, master_eta}});
+              covered += area;
+            }
+          }
+        }
+    }
+    return covered / face_area;
+  }
+} // namespace Nodus

@@ -1,0 +1,94 @@
+#include <nodus/contact/site_values.h>
+
+#include <algorithm>
+
+namespace Nodus
+{
+  namespace
+  {
+    /// A nodal field at all sites: filtered and weighted at slave nodes, interpolated at integration points.
+    template <typename Filter>
+    std::vector<double>
+    at_sites(const SurfaceWeights &weights, const unsigned int n_sites, std::vector<double> nodal, const Filter &filter)
+    {
+      std::vector<double> values(n_sites, 0.);
+      for (const ContactPoint &point : weights.points())
+        if (point.site != dealii::numbers::invalid_unsigned_int)
+          for (unsigned int a = 0; a < point.slaves.size(); ++a)
+            values[point.site] += point.shape[a] * nodal[point.slaves[a]];
+      for (unsigned int k = 0; k < nodal.size(); ++k)
+        if (!filter(k))
+          nodal[k] = 0.;
+      const std::vector<double> weighted = weights.weighted(nodal);
+      std::copy(weighted.begin(), weighted.end(), values.begin());
+      return values;
+    }
+
+    std::vector<std::array<double, 2>> site_friction(const ContactSurfaces &surfaces,
+                                                     const Pairing         &pairing,
+                                                     const SurfaceWeights  &weights,
+                                                     const Status          &status,
+                                                     const ContactState    &state)
+    {
+      // Nodes compare components in their own frames, as their weights do; points compare vectors in space.
+      std::vector<std::array<double, 2>> result(surfaces.n_sites(), {{0., 0.}});
+      std::vector<double>                component(state.Lambda.size());
+      for (unsigned int i = 0; i < 2; ++i)
+      {
+        for (unsigned int k = 0; k < component.size(); ++k)
+          component[k] = status.friction(k) ? state.Lambda[k][i] : 0.;
+        component = weights.weighted(component);
+        for (unsigned int k = 0; k < component.size(); ++k)
+          result[k][i] = component[k];
+      }
+      for (const ContactPoint &point : weights.points())
+        if (point.site != dealii::numbers::invalid_unsigned_int)
+        {
+          Vector3 Lambda;
+          for (unsigned int a = 0; a < point.slaves.size(); ++a)
+            for (unsigned int i = 0; i < 2; ++i)
+              Lambda += point.shape[a] * state.Lambda[point.slaves[a]][i] * pairing[point.slaves[a]].tangent[i];
+          for (unsigned int i = 0; i < 2; ++i)
+            result[point.site][i] = Lambda * pairing[point.site].tangent[i];
+        }
+      return result;
+    }
+  } // namespace
+
+  std::vector<double>
+  site_pressure(const SurfaceWeights &weights, const Status &status, const std::vector<double> &lambda)
+  {
+    return at_sites(weights, status.size(), lambda, [&](const unsigned int k) { return status.contact(k); });
+  }
+
+  StatusInput status_input(const std::vector<ContactPairParameters> &pairs,
+                           const ContactSurfaces                    &surfaces,
+                           const Pairing                            &pairing,
+                           const SurfaceWeights                     &weights,
+                           const Status                             &status,
+                           const ContactAssembler                   &assembler,
+                           const ContactState                       &state)
+  {
+    StatusInput input;
+    input.pressure = site_pressure(weights, status, state.lambda);
+    if (status.has_friction())
+      input.Lambda = site_friction(surfaces, pairing, weights, status, state);
+    else
+      input.Lambda.assign(surfaces.n_sites(), {{0., 0.}});
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+    {
+      if (!surfaces.is_point(s) && pairs[surfaces.pair(s)].status_test == ContactPairParameters::StatusTest::raw)
+      {
+        input.pressure[s] = status.contact(s) ? state.lambda[s] : 0.;
+        input.Lambda[s]   = state.Lambda[s];
+      }
+      // without partner or status there is no distance: keep the test on the open side
+      const bool tested = pairing[s].found && surfaces.has_status(s);
+      input.distance.push_back(tested ? assembler.distance(state, s) : 0.);
+      input.slip.push_back(assembler.slip(state, s));
+      if (!tested)
+        input.pressure[s] = 0.;
+    }
+    return input;
+  }
+} // namespace Nodus

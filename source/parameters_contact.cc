@@ -1,0 +1,148 @@
+#include <nodus/parameter_file.h>
+#include <nodus/parameter_keys.h>
+
+namespace Nodus
+{
+  namespace
+  {
+    using namespace ParameterKeys;
+
+    const Names<ContactPairParameters::Scheme> scheme_names = {
+        {ContactPairParameters::Scheme::nodal, "nodal"},
+        {ContactPairParameters::Scheme::integration_point, "integration point"},
+        {ContactPairParameters::Scheme::averaged, "averaged"}};
+
+    const Names<ContactPairParameters::Integration> integration_names = {
+        {ContactPairParameters::Integration::face, "face"}, {ContactPairParameters::Integration::segment, "segment"}};
+
+    const Names<ContactPairParameters::QuadratureRule> rule_names = {
+        {ContactPairParameters::QuadratureRule::gauss, "Gauss"},
+        {ContactPairParameters::QuadratureRule::simpson, "Simpson"},
+        {ContactPairParameters::QuadratureRule::newton_cotes, "Newton-Cotes"}};
+
+    const Names<ContactPairParameters::Surface> surface_names = {
+        {ContactPairParameters::Surface::faceted, "faceted"}, {ContactPairParameters::Surface::smoothed, "smoothed"}};
+
+    const Names<ContactPairParameters::SurfaceMeasure> surface_measure_names = {
+        {ContactPairParameters::SurfaceMeasure::current, "current"},
+        {ContactPairParameters::SurfaceMeasure::reference, "reference"}};
+
+    const Names<ContactPairParameters::Weights> weights_names = {
+        {ContactPairParameters::Weights::nodal_quadrature, "nodal quadrature"},
+        {ContactPairParameters::Weights::dual, "dual"},
+        {ContactPairParameters::Weights::consistent, "consistent"}};
+
+    const Names<ContactPairParameters::Normal> normal_names = {
+        {ContactPairParameters::Normal::master_facet, "master facet"},
+        {ContactPairParameters::Normal::averaged, "averaged"},
+        {ContactPairParameters::Normal::slave, "slave"}};
+
+    const Names<ContactPairParameters::InitialStatus> initial_status_names = {
+        {ContactPairParameters::InitialStatus::by_gap, "by gap"},
+        {ContactPairParameters::InitialStatus::closed, "closed"},
+        {ContactPairParameters::InitialStatus::open, "open"}};
+
+    const Names<ContactPairParameters::StatusTest> status_test_names = {
+        {ContactPairParameters::StatusTest::weighted, "weighted"}, {ContactPairParameters::StatusTest::raw, "raw"}};
+
+  } // namespace
+
+  /// @p prefix is "Slave ", "Master " or empty.
+  void ParameterKeys::add_region(ParameterHandler  &prm,
+                                 const std::string &prefix,
+                                 RegionParameters  &region,
+                                 const std::string &every_body,
+                                 const std::string &where)
+  {
+    prm.add_parameter(prefixed(prefix, "Body"), region.body, "Number of the body [-]" + every_body + ".", count);
+    prm.add_parameter(
+        prefixed(prefix, "Boundary ids"), region.boundary_ids, "Boundary ids of its faces [-], e.g. 1, 5.", ids);
+    prm.add_parameter(prefixed(prefix, "Where"),
+                      region.where,
+                      "Condition on the reference coordinates x, y, z [length] that thins the faces out, e.g. "
+                      "abs(x)<1e-9; empty: no condition. " +
+                          where,
+                      Patterns::Anything());
+  }
+
+  void ParameterKeys::add_contact_pair(ParameterHandler &prm, ContactPairParameters &pair)
+  {
+    const std::string where = "It is asked at the centres of the faces.";
+    prm.add_parameter("Name", pair.name, "Name in tables and messages [-]; empty: pair <n>.", Patterns::Anything());
+    add_region(prm, "Slave ", pair.slave, " that carries the contact pressures", where);
+    add_region(prm, "Master ", pair.master, " that the slave nodes are projected onto", where);
+    add_choice(prm,
+               "Scheme",
+               pair.scheme,
+               scheme_names,
+               "Where gaps and statuses are evaluated [-]: at the slave nodes, at the integration points of the slave "
+               "faces, or at the slave nodes with jumps averaged over their faces (mortar).");
+    add_choice(
+        prm,
+        "Integration",
+        pair.integration,
+        integration_names,
+        "Averaged scheme [-]: over whole slave faces with a fixed rule, or exactly over the overlaps of slave and "
+        "master faces.");
+    add_choice(prm,
+               "Quadrature rule",
+               pair.quadrature_rule,
+               rule_names,
+               "Rule on slave faces of the integration point scheme and of the averaged scheme by face [-].");
+    prm.add_parameter("Quadrature points",
+                      pair.quadrature_points,
+                      "Points of that rule in each direction of a face [-]: Gauss any, Simpson odd, Newton-Cotes 2, 3, "
+                      "4, 5 or 7; 0: automatic.",
+                      Patterns::Integer(0, 20));
+    prm.add_parameter(
+        "Friction coefficient", pair.friction_coefficient, "Coulomb's coefficient [-]; 0: no friction.", not_negative);
+    prm.add_parameter("Normal augmentation factor",
+                      pair.normal_augmentation_factor,
+                      "Factor on Young's modulus over face size, the scale of gaps against pressures [-]. It "
+                      "changes the path of the iteration, not the solution.",
+                      positive);
+    prm.add_parameter("Tangential augmentation factor",
+                      pair.tangential_augmentation_factor,
+                      "Factor on the scale of slips against friction tractions [-]. It changes the path of the "
+                      "iteration, not the solution.",
+                      positive);
+    add_choice(
+        prm, "Surface measure", pair.surface_measure, surface_measure_names, "Area that pressures refer to [-].");
+    add_choice(prm,
+               "Weights",
+               pair.weights,
+               weights_names,
+               "Integration of the contact terms over slave faces [-], nodal scheme only.");
+    add_choice(prm,
+               "Surface",
+               pair.surface,
+               surface_names,
+               "Faces of degree 1 as they are, or rounded to meet the averaged normals of the nodes [-]; edges sharper "
+               "than 45 degrees stay.");
+    add_choice(prm,
+               "Normal",
+               pair.normal,
+               normal_names,
+               "Contact normal [-]: of the master face, averaged over the faces at each master node, or averaged over "
+               "the faces at the slave node.");
+    prm.add_parameter("Search distance",
+                      pair.search_distance,
+                      "Slave nodes farther than this from the master have no partner [length]; 0: automatic.",
+                      not_negative);
+    prm.add_parameter("Projection tolerance",
+                      pair.projection_tolerance,
+                      "How far a projection may hang over the rim of the master surface [face sizes].",
+                      not_negative);
+    add_choice(prm,
+               "Initial status",
+               pair.initial_status,
+               initial_status_names,
+               "Status of the slave nodes at the start [-].");
+    add_choice(prm,
+               "Status test",
+               pair.status_test,
+               status_test_names,
+               "Pressure used to decide between open and closed [-]: the weighted one is the nodal force over the "
+               "nodal area.");
+  }
+} // namespace Nodus
