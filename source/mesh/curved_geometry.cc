@@ -92,6 +92,7 @@ namespace Nodus
         lengths *= columns[d].norm();
       return lengths > 0. ? dealii::determinant(columns) / lengths : 0.;
     }
+
     /// Not that of the CellId, which numbers the coarse cells in p4est's order.
     unsigned int coarse_index(CurvedGeometry::Cell cell)
     {
