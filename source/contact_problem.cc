@@ -68,7 +68,7 @@ namespace Nodus
       , communicator(comm)
       , console(log, dealii::Utilities::MPI::this_mpi_process(comm) == 0)
       , bodies(parameters.bodies, comm)
-      , mapping(parameters.degree)
+      , mapping(bodies.make_mapping(parameters.degree))
       , fe(dealii::FE_Q<dim>(parameters.degree), dim)
       , dof_handler(bodies.triangulation())
       , materials(make_materials(parameters.bodies))
@@ -77,9 +77,9 @@ namespace Nodus
     dof_handler.distribute_dofs(fe);
     dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
     boundary_conditions = std::make_unique<BoundaryConditions>(
-        parameters.boundary_conditions, bodies, dof_handler, mapping, parameters.load_stepping.interval_ends.back());
-    solid    = std::make_unique<SolidAssembler>(dof_handler, mapping, materials, boundary_conditions->loads());
-    surfaces = std::make_unique<ContactSurfaces>(parameters.contact_pairs, bodies, dof_handler, mapping);
+        parameters.boundary_conditions, bodies, dof_handler, *mapping, parameters.load_stepping.interval_ends.back());
+    solid    = std::make_unique<SolidAssembler>(dof_handler, *mapping, materials, boundary_conditions->loads());
+    surfaces = std::make_unique<ContactSurfaces>(parameters.contact_pairs, bodies, dof_handler, *mapping);
     surfaces->set_fixed(boundary_conditions->homogeneous_constraints());
     status = std::make_unique<Status>(
         parameters.contact_pairs, *surfaces, normal_augmentations(parameters, *surfaces, materials));
@@ -164,8 +164,8 @@ namespace Nodus
     system.bulk.clear();
     solid->make_sparsity(boundary_conditions->homogeneous_constraints(), system.bulk);
     linear_solver =
-        make_linear_solver(parameters.linear_solver, surfaces->layout(), rigid_body_data(dof_handler, mapping));
-    vtu    = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, mapping, materials);
+        make_linear_solver(parameters.linear_solver, surfaces->layout(), rigid_body_data(dof_handler, *mapping));
+    vtu    = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, *mapping, materials);
     tables = std::make_unique<Tables>(parameters.output.results_folder, communicator);
 
     std::vector<double> times;
@@ -294,7 +294,7 @@ namespace Nodus
       {
         cell->get_dof_indices(dofs);
         for (unsigned int i = 0; i < support_points.size(); ++i)
-          if (p.mapping.transform_unit_to_real_cell(cell, support_points[i]).distance(X) < 1e-8 * cell->diameter())
+          if (p.mapping->transform_unit_to_real_cell(cell, support_points[i]).distance(X) < 1e-8 * cell->diameter())
             for (unsigned int c = 0; c < dim; ++c)
             {
               const DoFIndex dof = dofs[p.fe.component_to_system_index(c, i)];

@@ -305,7 +305,7 @@ namespace Nodus
              ": this constraint repeats another one (over-constraint)";
     }
     std::map<DoFIndex, Point> points;
-    dealii::DoFTools::map_dofs_to_support_points(mapping, dof_handler, points);
+    dealii::DoFTools::map_dofs_to_support_points(*mapping, dof_handler, points);
     const auto  owner = points.find(flat_index);
     std::string here =
         owner == points.end() || !surfaces->layout().owned[0].is_element(flat_index) ? "" : coordinates(owner->second);

@@ -82,11 +82,13 @@ namespace Nodus
     void add(ParameterHandler &prm, BodyParameters &body)
     {
       prm.add_parameter("Name", body.name, "Name in tables and messages [-].", Patterns::Anything());
-      prm.add_parameter("Mesh file",
-                        body.mesh_file,
-                        "Gmsh file of linear hexahedra [-], relative to the folder of the .prm file. A body has "
-                        "either a mesh file or a generator.",
-                        Patterns::Anything());
+      prm.add_parameter(
+          "Mesh file",
+          body.mesh_file,
+          "Gmsh file of hexahedra of first or second order (8, 20 or 27 nodes) [-], relative to the folder of "
+          "the .prm file. The curved cells of a second-order file are kept under refinement; with Degree "
+          "= 1 only the corners of the refined cells count. A body has either a mesh file or a generator.",
+          Patterns::Anything());
       prm.add_parameter(
           "Volume ids", body.volume_ids, "Physical volumes taken from the mesh file [-]; empty: all.", ids);
       prm.add_parameter("Generator",

@@ -15,7 +15,7 @@
 #include <nodus/solve/newton.h>
 
 #include <deal.II/fe/fe_system.h>
-#include <deal.II/fe/mapping_q.h>
+#include <deal.II/fe/mapping.h>
 
 namespace Nodus
 {
@@ -51,14 +51,14 @@ namespace Nodus
     MPI_Comm         communicator;
     Console          console;
 
-    Bodies                                 bodies;
-    dealii::MappingQ<dim>                  mapping;
-    dealii::FESystem<dim>                  fe;
-    dealii::DoFHandler<dim>                dof_handler;
-    dealii::IndexSet                       relevant;
-    std::vector<std::unique_ptr<Material>> materials;
-    std::unique_ptr<BoundaryConditions>    boundary_conditions;
-    std::unique_ptr<SolidAssembler>        solid;
+    Bodies                                      bodies;
+    std::unique_ptr<const dealii::Mapping<dim>> mapping;
+    dealii::FESystem<dim>                       fe;
+    dealii::DoFHandler<dim>                     dof_handler;
+    dealii::IndexSet                            relevant;
+    std::vector<std::unique_ptr<Material>>      materials;
+    std::unique_ptr<BoundaryConditions>         boundary_conditions;
+    std::unique_ptr<SolidAssembler>             solid;
 
     std::unique_ptr<ContactSurfaces>  surfaces;
     Pairing                           pairing;

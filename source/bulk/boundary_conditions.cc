@@ -117,7 +117,7 @@ namespace Nodus
   {
     for (unsigned int n = 0; n < parameters_.size(); ++n)
       functions_.push_back(parse(parameters_[n], label(n)));
-    add_loads(bodies, dof_handler);
+    add_loads(bodies, dof_handler, mapping);
     collect_prescribed(find_held(bodies, dof_handler, mapping, end_time), dof_handler, mapping);
     make_constraints(dof_handler);
     set_time(0.);
@@ -129,7 +129,8 @@ namespace Nodus
     return "Boundary condition " + std::to_string(condition + 1) + (name.empty() ? "" : " ('" + name + "')");
   }
 
-  void BoundaryConditions::add_loads(const Bodies &bodies, const DoFHandler<dim> &dof_handler)
+  void
+  BoundaryConditions::add_loads(const Bodies &bodies, const DoFHandler<dim> &dof_handler, const Mapping<dim> &mapping)
   {
     std::vector<unsigned int> found(parameters_.size(), 0);
     for (unsigned int n = 0; n < parameters_.size(); ++n)
@@ -141,14 +142,13 @@ namespace Nodus
           where.boundary_ids.clear();
         Load load{&parameters_[n], Region(where, bodies, label(n)), functions_[n].get()};
         for (const auto &cell : dof_handler.active_cell_iterators())
-          if (cell->is_locally_owned() && load.region.contains_cell(cell))
+          if (cell->is_locally_owned())
           {
             if (on_cells)
-              found[n] += load.region.contains_point(cell->center());
+              found[n] += load.region.selects_cell(mapping, cell);
             else
               for (const auto face : cell->face_indices())
-                found[n] +=
-                    load.region.contains_face(cell, face) && load.region.contains_point(cell->face(face)->center());
+                found[n] += load.region.selects_face(mapping, cell, face);
           }
         loads_.push_back(std::move(load));
       }

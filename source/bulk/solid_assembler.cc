@@ -157,12 +157,12 @@ namespace Nodus
     {
       if (load.parameters->type == Type::body_force)
       {
-        if (load.region.contains_cell(cell) && load.region.contains_point(cell->center()))
+        if (load.region.selects_cell(mapping, cell))
           found.body_forces.push_back(&load);
         continue;
       }
       for (const auto face : cell->face_indices())
-        if (load.region.contains_face(cell, face) && load.region.contains_point(cell->face(face)->center()))
+        if (load.region.selects_face(mapping, cell, face))
         {
           const FaceTable &table = faces[face];
           FEValues<dim>    values(mapping,

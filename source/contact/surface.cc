@@ -66,7 +66,7 @@ namespace Nodus
       for (const auto &cell : dof_handler.active_cell_iterators())
         if (cell->is_locally_owned() && cell->at_boundary())
           for (const unsigned int f : cell->face_indices())
-            if (region.contains_face(cell, f) && region.contains_point(cell->face(f)->center()))
+            if (region.selects_face(mapping, cell, f))
             {
               cell->get_dof_indices(cell_dofs);
               const unsigned int normal = f / 2, a = normal == 0 ? 1 : 0, b = normal == 2 ? 1 : 2;

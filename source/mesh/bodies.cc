@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>
+#include <deal.II/fe/fe_q.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold.h>
@@ -148,8 +149,17 @@ namespace Nodus
       return dealii::determinant(edges);
     }
 
-    void check_orientation(const CoarseMesh &mesh)
+    /// @p origin names the file or generator. The corners alone are the geometry of linear elements, so they count also
+    /// where the cell is curved.
+    void check_orientation(const CoarseMesh &mesh, const std::string &origin)
     {
+      const auto refuse = [&](const Point &centre, const std::string &what, const std::string &fix)
+      {
+        std::ostringstream text;
+        text << origin << ": the cell with centre (" << centre << ") is turned inside out or collapsed " << what << "; "
+             << fix;
+        throw InputError(text.str());
+      };
       for (const auto &cell : mesh.cells)
         for (const unsigned int v : dealii::GeometryInfo<dim>::vertex_indices())
           if (!(scaled_jacobian(mesh.vertices, cell, v) > 1e-6))
@@ -157,11 +167,13 @@ namespace Nodus
             Point centre;
             for (const auto i : cell.vertices)
               centre += mesh.vertices[i] / 8.;
-            std::ostringstream text;
-            text << "the cell with centre (" << centre << ") is turned inside out or collapsed at a corner; "
-                 << "every hexahedron needs eight convex corners: mesh this place anew";
-            throw InputError(text.str());
+            refuse(centre, "at a corner", "every hexahedron needs eight convex corners: mesh this place anew");
           }
+      for (const auto &cell : mesh.curved)
+        if (!(cell.smallest_scaled_jacobian() > 1e-6))
+          refuse(cell.nodes[13],
+                 "by its curved edges or faces",
+                 "mesh this place finer, or let gmsh untangle it with Mesh.HighOrderOptimize=2");
     }
 
     /// Adds @p body to @p all without gluing anything.
@@ -218,6 +230,7 @@ namespace Nodus
 
   Bodies::Bodies(const std::vector<BodyParameters> &parameters, MPI_Comm communicator)
       : triangulation_(communicator)
+      , curved_(std::make_shared<CurvedGeometry>())
   {
     // Each rank reads the files itself. Should only some fail (a folder that one machine does not see), the others
     // must not wait for them for ever.
@@ -266,9 +279,15 @@ namespace Nodus
               dealii::GridTools::get_coarse_mesh_description(*generated_.back());
           place_manifolds(*generated_.back(), placement, mesh, manifolds);
         }
-        check_orientation(mesh);
+        check_orientation(mesh, body.mesh_file.empty() ? "generator " + body.generator : "mesh file " + body.mesh_file);
         for (Point &vertex : mesh.vertices)
           vertex = placement.apply(vertex);
+        for (unsigned int c = 0; c < mesh.curved.size(); ++c)
+        {
+          for (Point &node : mesh.curved[c].nodes)
+            node = placement.apply(node);
+          curved_->add(all.cells.size() + c, mesh.curved[c]);
+        }
         append(mesh, b, all);
       }
       catch (const InputError &error)
@@ -281,6 +300,31 @@ namespace Nodus
     triangulation_.create_triangulation(all.vertices, all.cells, all.boundary);
     for (const auto &[id, manifold] : manifolds)
       triangulation_.set_manifold(id, *manifold);
+    if (!curved_->empty())
+      triangulation_.signals.post_refinement.connect([this] { place_vertices(); });
+  }
+
+  /// Refinement puts new vertices on straight edges; they belong on the curved cell of the file. Every rank knows all
+  /// coarse cells, so that nothing need be sent.
+  void Bodies::place_vertices()
+  {
+    std::vector<Point> unit;
+    for (const unsigned int v : dealii::GeometryInfo<dim>::vertex_indices())
+      unit.push_back(dealii::GeometryInfo<dim>::unit_cell_vertex(v));
+    for (const auto &cell : triangulation_.active_cell_iterators())
+      if (cell->level() > 0 && curved_->covers(cell))
+      {
+        const auto x = curved_->positions(cell, unit);
+        for (const unsigned int v : cell->vertex_indices())
+          cell->vertex(v) = x[v];
+      }
+  }
+
+  std::unique_ptr<dealii::Mapping<dim>> Bodies::make_mapping(const unsigned int degree) const
+  {
+    if (curved_->empty() || degree == 1) // the vertices of linear elements are in place
+      return std::make_unique<dealii::MappingQ<dim>>(degree);
+    return std::make_unique<CurvedMapping>(degree, curved_);
   }
 
   /// In the distributed triangulation, so that the coarse mesh stays small and p4est knows the hierarchy. Bodies share
@@ -308,18 +352,27 @@ namespace Nodus
         if (face->at_boundary())
           boundary_ids_[cell->material_id()].insert(face->boundary_id());
 
-    // ... but a curved body grows when it is refined, and the fine vertices are spread over the ranks.
-    constexpr double    infinity = std::numeric_limits<double>::infinity();
-    std::vector<double> lower(dim * size(), infinity), upper(dim * size(), infinity); // upper: negative maxima
+    // ... but a curved body grows when it is refined, and the fine vertices are spread over the ranks. Cells of
+    // second-order files are wider than their vertices tell.
+    constexpr double         infinity = std::numeric_limits<double>::infinity();
+    std::vector<double>      lower(dim * size(), infinity), upper(dim * size(), infinity); // upper: negative maxima
+    const std::vector<Point> quadratic_nodes = dealii::FE_Q<dim>(2).get_unit_support_points();
     for (const auto &cell : triangulation_.active_cell_iterators())
       if (cell->is_locally_owned())
+      {
+        std::vector<Point> points;
+        if (curved_->covers(cell))
+          points = curved_->positions(cell, quadratic_nodes);
         for (const unsigned int v : cell->vertex_indices())
+          points.push_back(cell->vertex(v));
+        for (const Point &x : points)
           for (unsigned int d = 0; d < dim; ++d)
           {
             const auto i = dim * cell->material_id() + d;
-            lower[i]     = std::min(lower[i], cell->vertex(v)[d]);
-            upper[i]     = std::min(upper[i], -cell->vertex(v)[d]);
+            lower[i]     = std::min(lower[i], x[d]);
+            upper[i]     = std::min(upper[i], -x[d]);
           }
+      }
     dealii::Utilities::MPI::min(lower, triangulation_.get_communicator(), lower);
     dealii::Utilities::MPI::min(upper, triangulation_.get_communicator(), upper);
     for (unsigned int b = 0; b < size(); ++b)

@@ -18,21 +18,20 @@ namespace Nodus
   {
     using PhysicalIds = std::vector<int>;
 
-    /// What of an element matters here; corners index into Raw::vertices.
+    /// What of an element matters here; nodes index into Raw::vertices, the corners come first.
     struct Element
     {
       PhysicalIds               physical;
-      std::vector<unsigned int> corners;
+      std::vector<unsigned int> nodes;
     };
 
     /// The file as it is, before any selection.
     struct Raw
     {
-      std::vector<Point>                     vertices;
-      std::unordered_map<long, unsigned int> index; ///< node tag -> index into vertices
-      std::vector<Element>                   quadrilaterals, hexahedra;
-      std::vector<std::pair<int, PhysicalIds>>
-          others; ///< element type and ids of volume elements that are no hexahedra
+      std::vector<Point>                               vertices;
+      std::unordered_map<long, unsigned int>           index; ///< node tag -> index into vertices
+      std::vector<Element>                             quadrilaterals, hexahedra;
+      std::vector<std::pair<std::string, PhysicalIds>> others; ///< volume elements that are no hexahedra
     };
 
     /// Reads one file; every failure carries its name.
@@ -199,27 +198,39 @@ namespace Nodus
 
       void read_element(const int type, const PhysicalIds &physical)
       {
-        static const std::map<int, unsigned int> corners = {
-            {1, 2}, {2, 3}, {3, 4}, {4, 4}, {5, 8}, {6, 6}, {7, 5}, {15, 1}};
-        const auto n_corners = corners.find(type);
-        if (n_corners == corners.end()) // every other gmsh type has nodes on edges
-          fail("curved faces are not supported yet: save with Mesh.ElementOrder=1");
+        // gmsh's types 1 to 19 are the elements of first and second order
+        static constexpr unsigned int n_nodes[20] = {0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13};
+        if (type < 1 || type > 19)
+          fail("holds elements of gmsh type " + std::to_string(type) +
+               ", nodus reads those of first and second order only: save with Mesh.ElementOrder=2 or 1");
 
-        Element element{physical, std::vector<unsigned int>(n_corners->second)};
-        for (unsigned int &corner : element.corners)
+        Element element{physical, std::vector<unsigned int>(n_nodes[type])};
+        for (unsigned int &node : element.nodes)
         {
           const auto tag   = next<long>();
           const auto index = raw_.index.find(tag);
           if (index == raw_.index.end())
             fail("uses node " + std::to_string(tag) + ", which it does not define; write it again with gmsh");
-          corner = index->second;
+          node = index->second;
         }
-        if (type == 3)
+        const auto is = [type](const std::initializer_list<int> types)
+        { return std::find(types.begin(), types.end(), type) != types.end(); };
+        if (is({3, 10, 16}))
           raw_.quadrilaterals.push_back(std::move(element));
-        else if (type == 5)
+        else if (is({5, 12, 17}))
+        {
+          if (!raw_.hexahedra.empty() && raw_.hexahedra[0].nodes.size() != element.nodes.size())
+            fail("mixes hexahedra of " + std::to_string(raw_.hexahedra[0].nodes.size()) + " and of " +
+                 std::to_string(element.nodes.size()) +
+                 " nodes: save the whole mesh with one Mesh.ElementOrder and one Mesh.SecondOrderIncomplete");
           raw_.hexahedra.push_back(std::move(element));
-        else if (type == 4 || type == 6 || type == 7)
-          raw_.others.emplace_back(type, physical);
+        }
+        else if (is({4, 11}))
+          raw_.others.emplace_back("tetrahedra", physical);
+        else if (is({6, 13, 18}))
+          raw_.others.emplace_back("prisms", physical);
+        else if (is({7, 14, 19}))
+          raw_.others.emplace_back("pyramids", physical);
       }
 
       std::string                                file_;
@@ -292,10 +303,7 @@ namespace Nodus
     for (const auto &[type, physical] : raw.others)
     {
       if (selected(physical))
-        reader.fail(std::string("holds ") +
-                    (type == 4   ? "tetrahedra"
-                     : type == 6 ? "prisms"
-                                 : "pyramids") +
+        reader.fail("holds " + type +
                     ", nodus needs hexahedra only: use transfinite or extruded volumes with Recombine, or select "
                     "other volumes with 'Volume ids'");
       present.insert(physical.begin(), physical.end());
@@ -313,8 +321,15 @@ namespace Nodus
       {
         dealii::CellData<dim> cell;
         for (unsigned int v = 0; v < 8; ++v)
-          cell.vertices[dealii::GeometryInfo<dim>::ucd_to_deal[v]] = hexahedron.corners[v];
+          cell.vertices[dealii::GeometryInfo<dim>::ucd_to_deal[v]] = hexahedron.nodes[v];
         mesh.cells.push_back(cell);
+        if (hexahedron.nodes.size() > 8)
+        {
+          std::vector<Point> nodes;
+          for (const unsigned int node : hexahedron.nodes)
+            nodes.push_back(raw.vertices[node]);
+          mesh.curved.push_back(QuadraticCell::from_gmsh(nodes));
+        }
       }
 
     const std::vector<Face> boundary = boundary_faces(mesh.cells, reader);
@@ -323,7 +338,7 @@ namespace Nodus
     {
       if (quadrilateral.physical.empty())
         continue;
-      const auto &c    = quadrilateral.corners;
+      const auto &c    = quadrilateral.nodes;
       const Face  face = sorted({{c[0], c[1], c[2], c[3]}});
       if (!std::binary_search(boundary.begin(), boundary.end(), face))
         continue; // of another body, or inside this one
@@ -351,10 +366,13 @@ namespace Nodus
 
     mesh.vertices = std::move(raw.vertices);
     dealii::GridTools::delete_unused_vertices(mesh.vertices, mesh.cells, mesh.boundary);
+    const std::vector<dealii::CellData<dim>> before = mesh.cells;
     // A body that was mirrored, or extruded downwards, has its nodes in the other order; tangled cells are caught
     // later.
     dealii::GridTools::invert_cells_with_negative_measure(mesh.vertices, mesh.cells);
     dealii::GridTools::consistently_order_cells(mesh.cells);
+    for (unsigned int c = 0; c < mesh.curved.size(); ++c)
+      mesh.curved[c] = mesh.curved[c].reoriented(before[c].vertices, mesh.cells[c].vertices);
     return mesh;
   }
 } // namespace Nodus

@@ -238,7 +238,7 @@ int main(int argc, char **argv)
     describe(file + " as two bodies", {from_file(file, {1}), from_file(file, {2})});
   }
 
-  write("quadratic.msh", replaced(format_22, "6 5 2 2 2", "6 17 2 2 2"));
+  write("cubic.msh", replaced(format_22, "6 5 2 2 2", "6 92 2 2 2"));
   write("tetrahedra.msh", replaced(format_22, "6 5 2 2 2 9 10 11 12 5 6 7 8", "6 4 2 2 2 9 10 11 5"));
   write("tangled.msh", replaced(format_22, "5 5 2 1 1 1 2 3 4", "5 5 2 1 1 2 1 3 4"));
   write("binary.msh", replaced(format_22, "2.2 0 8", "2.2 1 8"));
@@ -246,7 +246,7 @@ int main(int argc, char **argv)
   write("cut.msh", format_22.substr(0, format_22.size() - 40));
   write("two_ids.msh", replaced(format_22, "4 3 2 9 3 9 10 11 12", "4 3 2 9 3 2 1 4 3"));
   write("text.msh", "hello\n");
-  refused_bodies("second order", {lower, from_file("quadratic.msh")});
+  refused_bodies("third order", {lower, from_file("cubic.msh")});
   refused_bodies("missing", {from_file("nowhere.msh")});
   refused_bodies("tetrahedra", {from_file("tetrahedra.msh")});
   refused_bodies("tetrahedra not selected", {from_file("tetrahedra.msh", {1})});

@@ -82,7 +82,8 @@ namespace Nodus
     };
     struct Held; ///< the condition and the place of an owned prescribed degree of freedom
 
-    void                     add_loads(const Bodies &bodies, const dealii::DoFHandler<dim> &dof_handler);
+    void
+    add_loads(const Bodies &bodies, const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping);
     std::map<DoFIndex, Held> find_held(const Bodies                  &bodies,
                                        const dealii::DoFHandler<dim> &dof_handler,
                                        const dealii::Mapping<dim>    &mapping,

@@ -1,6 +1,7 @@
 #ifndef nodus_mesh_bodies_h
 #define nodus_mesh_bodies_h
 
+#include <nodus/mesh/curved_geometry.h>
 #include <nodus/parameters.h>
 #include <nodus/types.h>
 
@@ -22,7 +23,8 @@ namespace Nodus
   {
   public:
     /// Reads or generates every body, transforms it and concatenates the coarse meshes without gluing.
-    /// @throws InputError: missing or second-order file, no hexahedra, inverted cells, unknown volume id or generator.
+    /// @throws InputError: missing file or one of third order, no hexahedra, inverted cells, unknown volume id or
+    /// generator.
     Bodies(const std::vector<BodyParameters> &parameters, MPI_Comm communicator);
 
     using Triangulation = dealii::parallel::distributed::Triangulation<dim>;
@@ -31,6 +33,10 @@ namespace Nodus
     {
       return triangulation_;
     }
+    /// The reference geometry, of @p degree per cell: that of second-order files where a body comes from one, also
+    /// after refinement, that of the generators' manifolds elsewhere. May outlive the bodies.
+    std::unique_ptr<dealii::Mapping<dim>> make_mapping(unsigned int degree) const;
+
     unsigned int size() const
     {
       return names_.size();
@@ -56,12 +62,14 @@ namespace Nodus
     /// so these outlive the triangulation that uses the manifolds.
     std::vector<std::unique_ptr<dealii::Triangulation<dim>>> generated_;
     Triangulation                                            triangulation_;
+    std::shared_ptr<CurvedGeometry>                          curved_;
     std::vector<std::string>                                 names_;
     std::vector<std::set<dealii::types::boundary_id>>        boundary_ids_;
     std::vector<dealii::BoundingBox<dim>>                    boxes_;
 
     void create(const std::vector<BodyParameters> &parameters);
     void refine(const std::vector<BodyParameters> &parameters);
+    void place_vertices();
     void collect_extents();
   };
 } // namespace Nodus

@@ -1,6 +1,7 @@
 #ifndef nodus_mesh_gmsh_reader_h
 #define nodus_mesh_gmsh_reader_h
 
+#include <nodus/mesh/curved_geometry.h>
 #include <nodus/types.h>
 
 #include <deal.II/grid/tria_description.h>
@@ -16,14 +17,15 @@ namespace Nodus
     std::vector<Point>                 vertices;
     std::vector<dealii::CellData<dim>> cells;
     dealii::SubCellData                boundary; ///< faces with an id other than 0; may hold manifold ids
+    std::vector<QuadraticCell>         curved;   ///< one per cell of a second-order file, else empty
   };
 
-  /// Reads the hexahedra of a gmsh file (ASCII, version 2.2 or 4.1, first order), only those whose physical volume is
-  /// in @p volume_ids unless that is empty. The boundary id of a face is its physical surface.
+  /// Reads the hexahedra of a gmsh file (ASCII, version 2.2 or 4.1; 8, 20 or 27 nodes), only those whose physical
+  /// volume is in @p volume_ids unless that is empty. The boundary id of a face is its physical surface.
   ///
   /// Not GridIn::read_msh: bodies are cut out here before a triangulation exists, so that two bodies may come from one
   /// file whose volumes share the nodes of their interface, and a physical surface inside a body is ignored; GridIn
-  /// throws for both.
+  /// throws for both, and for second-order files.
   ///
   /// @throws InputError: the message starts with the file name and ends with the fix.
   CoarseMesh read_gmsh(const std::string &file, const std::vector<unsigned int> &volume_ids);

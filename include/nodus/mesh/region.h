@@ -5,6 +5,7 @@
 #include <nodus/parameters.h>
 
 #include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/mapping.h>
 
 #include <memory>
 
@@ -45,6 +46,25 @@ namespace Nodus
     bool contains_cell(const Cell &cell) const
     {
       return body_ == 0 || cell->material_id() + 1 == body_;
+    }
+
+    /// contains_face, and the predicate holds at the centre of the face as @p mapping bends it.
+    template <typename Cell>
+    bool selects_face(const dealii::Mapping<dim> &mapping, const Cell &cell, const unsigned int face) const
+    {
+      if (!predicate_ || !contains_face(cell, face))
+        return contains_face(cell, face);
+      Point unit(0.5, 0.5, 0.5);
+      unit[face / 2] = face % 2;
+      return contains_point(mapping.transform_unit_to_real_cell(cell, unit));
+    }
+
+    /// contains_cell, and the predicate holds at the centre of the cell as @p mapping bends it.
+    template <typename Cell>
+    bool selects_cell(const dealii::Mapping<dim> &mapping, const Cell &cell) const
+    {
+      return contains_cell(cell) &&
+             (!predicate_ || contains_point(mapping.transform_unit_to_real_cell(cell, Point(0.5, 0.5, 0.5))));
     }
 
     /// The predicate at a reference point; true where there is none.
