@@ -102,6 +102,7 @@ namespace Nodus
   void Status::begin_loop()
   {
     visited_.clear();
+    opened_.assign(now_.contact.size(), false);
     one_at_a_time_ = false;
   }
 
@@ -148,8 +149,10 @@ namespace Nodus
         continue;
 
       now_.contact[k] = found != Contradiction::tension;
-      if (found != Contradiction::tension)
-        now_.stick[k] = found != Contradiction::over_cone; // a node that closes sticks first
+      if (found == Contradiction::tension)
+        opened_[k] = true;
+      else // a site that closes sticks first; one that opened in this loop slips, stick may be what pulled it open
+        now_.stick[k] = found == Contradiction::against_slip || (found == Contradiction::penetration && !opened_[k]);
       ++ledger_[k].changes;
       ledger_[k].last = found;
       result.sites.push_back(k);

@@ -122,7 +122,7 @@ namespace Nodus
       bool                      cycles  = false; ///< visited again although sites change one at a time
       std::vector<unsigned int> sites;           ///< that changed
     };
-    /// Tests every site and changes those that contradict their status (eq. 2, 3, 7, 8). Once a status vector comes
+    /// Tests every site and changes those that contradict their status (eq. 2, 3, 7, 8); begin_loop() comes first. Once a status vector comes
     /// back, only the contradicting site of lowest number changes in a pass: Murty's least-index rule, which is finite
     /// for frictionless contact at frozen geometry where changing all at once may cycle.
     Update update(const StatusInput &input);
@@ -159,6 +159,7 @@ namespace Nodus
     double                                    threshold_floor_ = 0.;
     std::vector<StatusLedger>                 ledger_;
     std::vector<std::vector<char>>            visited_;
+    std::vector<char>                         opened_; ///< in this status loop
     bool                                      one_at_a_time_ = false;
   };
 } // namespace Nodus
