@@ -100,6 +100,7 @@ namespace Cases
     return condition(name, BoundaryConditionParameters::Type::pressure, where, {}, {value});
   }
 
+  /// Nodal scheme on the facets as they are, which most reference values are for.
   inline ContactPairParameters
   pair(const RegionParameters &slave, const RegionParameters &master, const double friction = 0.)
   {
@@ -108,6 +109,9 @@ namespace Cases
     p.slave                = slave;
     p.master               = master;
     p.friction_coefficient = friction;
+    p.scheme               = ContactPairParameters::Scheme::nodal;
+    p.surface              = ContactPairParameters::Surface::faceted;
+    p.normal               = ContactPairParameters::Normal::master_facet;
     return p;
   }
 

@@ -130,3 +130,46 @@ def figure(width=6.0, height=4.0):
     import matplotlib.pyplot as plt
 
     return plt.subplots(figsize=(width, height), layout="constrained")
+
+
+# Corners, edges and faces of gmsh's hexahedra (types 5 and 12) as positions in the 3 x 3 x 3 lattice of nodes.
+_CORNERS = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)]
+_EDGES = [(0, 1), (0, 3), (0, 4), (1, 2), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 7), (5, 6), (6, 7)]
+_FACES = [(0, 3, 2, 1), (0, 1, 5, 4), (0, 4, 7, 3), (1, 2, 6, 5), (2, 3, 7, 6), (4, 5, 6, 7)]
+
+
+def _middle(corners):
+    return tuple(sum(_CORNERS[c][d] for c in corners) // len(corners) for d in range(3))
+
+
+def write_mesh(name, bodies):
+    """Writes grids of 27-node hexahedra as a gmsh file into the scratch folder; returns its path.
+
+    bodies: arrays of nodes with shape (2 nx + 1, 2 ny + 1, 2 nz + 1, 3). Body b is the physical volume b = 1, 2, ...;
+    its sides are the surfaces 10 b + 0 ... 5 = x-, x+, y-, y+, z-, z+ of the grid.
+    """
+    lattice27 = _CORNERS + [_middle(e) for e in _EDGES] + [_middle(f) for f in _FACES] + [(1, 1, 1)]
+    points, quads, hexes, before = [], [], [], 0
+    for b, nodes in enumerate(bodies, 1):
+        number = before + 1 + np.arange(nodes[..., 0].size).reshape(nodes.shape[:3])
+        before += number.size
+        points.append(nodes.reshape(-1, 3))
+        cells = np.array([number[i : number.shape[0] - 2 + i : 2, j : number.shape[1] - 2 + j : 2,
+                                 k : number.shape[2] - 2 + k : 2] for i, j, k in lattice27])  # fmt: skip
+        hexes += [(b, cell) for cell in cells.reshape(27, -1).T]
+        for side in range(6):
+            sheet = np.moveaxis(number, side // 2, 0)[-(side % 2)]
+            around = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1), (1, 1)]
+            faces = np.array([sheet[i : sheet.shape[0] - 2 + i : 2, j : sheet.shape[1] - 2 + j : 2] for i, j in around])
+            quads += [(10 * b + side, face) for face in faces.reshape(9, -1).T]
+    path = os.path.join(SCRATCH, name + ".msh")
+    os.makedirs(SCRATCH, exist_ok=True)
+    with open(path, "w") as file:
+        file.write(f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{before}\n")
+        for n, (x, y, z) in enumerate(np.concatenate(points), 1):
+            file.write(f"{n} {x:.16g} {y:.16g} {z:.16g}\n")
+        file.write(f"$EndNodes\n$Elements\n{len(quads) + len(hexes)}\n")
+        for n, (kind, (tag, cell)) in enumerate([(10, q) for q in quads] + [(12, h) for h in hexes], 1):
+            file.write(f"{n} {kind} 2 {tag} {tag} " + " ".join(map(str, cell)) + "\n")
+        file.write("$EndElements\n")
+    return path

@@ -133,14 +133,14 @@ namespace Nodus
     double           friction_coefficient           = 0.;
     double           normal_augmentation_factor     = 1.;  ///< times E/h gives rho_n
     double           tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
-    Scheme           scheme                         = Scheme::nodal;
+    Scheme           scheme                         = Scheme::averaged;
     Integration      integration                    = Integration::segment;  ///< averaged scheme
     QuadratureRule   quadrature_rule                = QuadratureRule::gauss; ///< integration points, averaged by face
     unsigned int     quadrature_points              = 0; ///< per direction of a slave face; 0 = automatic
     SurfaceMeasure   surface_measure                = SurfaceMeasure::current;
     Weights          weights                        = Weights::nodal_quadrature;
-    Surface          surface                        = Surface::faceted;
-    Normal           normal                         = Normal::master_facet;
+    Surface          surface                        = Surface::smoothed;
+    Normal           normal                         = Normal::averaged;
     double           search_distance                = 0.;   ///< [length]; 0 = automatic
     double           projection_tolerance           = 0.05; ///< overhang accepted, in face sizes
     InitialStatus    initial_status                 = InitialStatus::by_gap;

@@ -99,9 +99,10 @@ namespace Nodus
       return orientation / area.norm() * area;
     }
 
-    /// Local coordinates of the point of face @p f that the plane sees at @p p.
+    /// Local coordinates of the point of face @p f that the plane sees at @p p; of the face as it is, or of the facet.
     bool invert(const SurfaceGeometry &surface,
                 const unsigned int     f,
+                const bool             facet,
                 const Plane           &plane,
                 const Point2          &p,
                 double                &xi,
@@ -109,9 +110,11 @@ namespace Nodus
     {
       for (unsigned int iteration = 0; iteration < 20; ++iteration)
       {
-        const FaceGeometry geometry(surface.face(f), FaceShape(surface.degree(), xi, eta), surface.positions());
-        const auto         r = p - plane(geometry.x);
-        const double       a = geometry.d_xi * plane.axis[0], b = geometry.d_eta * plane.axis[0],
+        const FaceGeometry geometry =
+            facet ? FaceGeometry(surface.face(f), FaceShape(surface.degree(), xi, eta), surface.positions())
+                  : surface.at(f, xi, eta);
+        const auto   r = p - plane(geometry.x);
+        const double a = geometry.d_xi * plane.axis[0], b = geometry.d_eta * plane.axis[0],
                      c = geometry.d_xi * plane.axis[1], d = geometry.d_eta * plane.axis[1];
         const double det     = a * d - b * c;
         const double step_xi = (d * r[0] - b * r[1]) / det, step_eta = (a * r[1] - c * r[0]) / det;
@@ -212,21 +215,21 @@ namespace Nodus
             for (unsigned int q = 0; q < rule.size(); ++q)
             {
               const Point2 p = polygon.corner[0] + rule.point(q)[0] * a + rule.point(q)[1] * b;
-              if (!invert(slave, f, plane, p, xi, eta))
+              if (!invert(slave, f, true, plane, p, xi, eta))
               {
                 points.clear();
                 return 0.; // the face is folded over: no partner
               }
-              if (!invert(master, m, plane, p, master_xi, master_eta))
+              // the partner lies on the smoothed faces, straight across
+              const Point x = slave.at(f, xi, eta).x;
+              if (!invert(master, m, false, plane, plane(x), master_xi, master_eta))
               {
                 master_xi  = (master_cell % degree + 0.5) / degree;
                 master_eta = (master_cell / degree + 0.5) / degree;
                 continue;
               }
               const FaceGeometry geometry(slave.face(f), FaceShape(degree, xi, eta), slave.positions());
-              const Vector3      gap =
-                  FaceGeometry(master.face(m), FaceShape(degree, master_xi, master_eta), master.positions()).x -
-                  geometry.x;
+              const Vector3      gap = master.at(m, master_xi, master_eta).x - x;
               if (gap.norm() > reach)
                 continue;
               const double plane_area = std::abs(geometry.area_vector() * plane.normal);
