@@ -141,7 +141,7 @@ namespace Nodus
       using Rule   = ContactPairParameters::QuadratureRule;
       section.require(pair.scheme == Scheme::nodal || pair.weights != ContactPairParameters::Weights::consistent,
                       "Weights",
-                      "= consistent needs 'Scheme = nodal'; the other schemes bring their own weights, remove the key");
+                      "is consistent, which needs 'Scheme = nodal'; the other schemes bring their own weights: remove the key");
       const unsigned int n = pair.quadrature_points;
       section.require(n == 0 || pair.quadrature_rule != Rule::simpson || (n >= 3 && n % 2 == 1),
                       "Quadrature points",

@@ -186,7 +186,7 @@ def solve(found, family, n, scheme):
 
 
 def main():
-    found = load() if len(sys.argv) > 1 else {}
+    found = load() if {"--continue", "--report"} & set(sys.argv) else {}
     for position in range(3 if "--report" not in sys.argv else 0):  # --report: only the texts again
         for family, sizes in FAMILIES.items():
             for scheme in common.SCHEMES:
