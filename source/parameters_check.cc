@@ -139,9 +139,10 @@ namespace Nodus
 
       using Scheme = ContactPairParameters::Scheme;
       using Rule   = ContactPairParameters::QuadratureRule;
-      section.require(pair.scheme == Scheme::nodal || pair.weights != ContactPairParameters::Weights::consistent,
-                      "Weights",
-                      "is consistent, which needs 'Scheme = nodal'; the other schemes bring their own weights: remove the key");
+      section.require(
+          pair.scheme == Scheme::nodal || pair.weights != ContactPairParameters::Weights::consistent,
+          "Weights",
+          "is consistent, which needs 'Scheme = nodal'; the other schemes bring their own weights: remove the key");
       const unsigned int n = pair.quadrature_points;
       section.require(n == 0 || pair.quadrature_rule != Rule::simpson || (n >= 3 && n % 2 == 1),
                       "Quadrature points",
