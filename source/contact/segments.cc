@@ -58,6 +58,34 @@ namespace Nodus
       }
     };
 
+    /// A cell as the plane sees it, counterclockwise, and its bounding box.
+    struct Shadow
+    {
+      Polygon polygon;
+      Point2  low, high;
+
+      Shadow(const std::array<Point, 4> &corner, const Plane &plane)
+          : low(plane(corner[0]))
+          , high(low)
+      {
+        for (const Point &x : corner)
+        {
+          const Point2 p = plane(x);
+          polygon.add(p);
+          for (unsigned int c = 0; c < 2; ++c)
+          {
+            low[c]  = std::min(low[c], p[c]);
+            high[c] = std::max(high[c], p[c]);
+          }
+        }
+        polygon.make_counterclockwise();
+      }
+      bool apart(const Shadow &other) const
+      {
+        return low[0] > other.high[0] || high[0] < other.low[0] || low[1] > other.high[1] || high[1] < other.low[1];
+      }
+    };
+
     /// The part of @p polygon inside the convex @p window (Sutherland & Hodgman 1974).
     Polygon clip(Polygon polygon, const Polygon &window)
     {
@@ -156,20 +184,8 @@ namespace Nodus
       plane.axis[0] /= plane.axis[0].norm();
       plane.axis[1] = dealii::cross_product_3d(plane.normal, plane.axis[0]);
 
-      Polygon window;
-      Point2  low = plane(corner[0]), high = low;
-      for (const Point &x : corner)
-      {
-        const Point2 p = plane(x);
-        window.add(p);
-        for (unsigned int c = 0; c < 2; ++c)
-        {
-          low[c]  = std::min(low[c], p[c]);
-          high[c] = std::max(high[c], p[c]);
-        }
-      }
-      window.make_counterclockwise();
-      const double cell_area = window.area();
+      const Shadow window(corner, plane);
+      const double cell_area = window.polygon.area();
       face_area += cell_area;
 
       // the cell swept along its normal
@@ -187,22 +203,10 @@ namespace Nodus
           const auto master_corner = cell_corners(master, m, master_cell);
           if (cell_normal(master_corner, master.face(m).orientation) * plane.normal > -facing_cosine)
             continue;
-          Polygon polygon;
-          Point2  master_low = plane(master_corner[0]), master_high = master_low;
-          for (const Point &x : master_corner)
-          {
-            const Point2 p = plane(x);
-            polygon.add(p);
-            for (unsigned int c = 0; c < 2; ++c)
-            {
-              master_low[c]  = std::min(master_low[c], p[c]);
-              master_high[c] = std::max(master_high[c], p[c]);
-            }
-          }
-          if (master_low[0] > high[0] || master_high[0] < low[0] || master_low[1] > high[1] || master_high[1] < low[1])
+          const Shadow shadow(master_corner, plane);
+          if (shadow.apart(window))
             continue;
-          polygon.make_counterclockwise();
-          polygon = clip(polygon, window);
+          const Polygon polygon = clip(shadow.polygon, window.polygon);
           if (polygon.n < 3 || polygon.area() < smallest_overlap * cell_area)
             continue;
 

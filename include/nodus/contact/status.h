@@ -122,9 +122,9 @@ namespace Nodus
       bool                      cycles  = false; ///< visited again although sites change one at a time
       std::vector<unsigned int> sites;           ///< that changed
     };
-    /// Tests every site and changes those that contradict their status (eq. 2, 3, 7, 8); begin_loop() comes first. Once a status vector comes
-    /// back, only the contradicting site of lowest number changes in a pass: Murty's least-index rule, which is finite
-    /// for frictionless contact at frozen geometry where changing all at once may cycle.
+    /// Tests every site and changes those that contradict their status (eq. 2, 3, 7, 8); begin_loop() comes first. Once
+    /// a status vector comes back, only the contradicting site of lowest number changes in a pass: Murty's least-index
+    /// rule, which is finite for frictionless contact at frozen geometry where changing all at once may cycle.
     Update update(const StatusInput &input);
 
     /// Empties the ledger, at the start of an increment.
