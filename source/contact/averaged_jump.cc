@@ -3,6 +3,7 @@
 #include <nodus/contact/segments.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 
 #include <Eigen/Dense>
 
@@ -95,7 +96,7 @@ namespace Nodus
           if (std::find(result.nodes.begin() + n, result.nodes.end(), node) == result.nodes.end())
             result.nodes.push_back(node);
 
-      // psi = (part D M^-1 + (1 - part) hats-to-phi) ... evaluated point by point from the matrices of the face
+      // psi = part (D M^-1)^T phi + (1 - part) hat, with M and D over the covered part
       Matrix              mass = Matrix::Zero(n, n);
       Column              area = Column::Zero(n);
       std::vector<double> weight(points.size());
@@ -151,9 +152,29 @@ namespace Nodus
           }
         }
       }
+      // The points on a curved face integrate its shape functions nearly, Gauss points to round-off: nodal areas of
+      // covered faces are those.
+      static const dealii::QGauss<2> gauss(4);
+      Column                         exact = Column::Zero(n);
+      for (unsigned int q = 0; q < gauss.size(); ++q)
+      {
+        const FaceShape shape(degree, gauss.point(q)[0], gauss.point(q)[1]);
+        exact += gauss.weight(q) * FaceGeometry(face, shape, measure).area_vector().norm() *
+                 Eigen::Map<const Column>(shape.value.data(), n);
+      }
       for (unsigned int a = 0; a < n; ++a)
-        result.weights[(a + 1) * n_columns - 1] =
-            coverage > 0. ? result.weights[(a + 1) * n_columns - 2] / coverage : 0.;
+      {
+        double *const row = result.weights.data() + a * n_columns;
+        if (part > 0.)
+        {
+          const double scale = 1. + part * (exact[a] / row[n_columns - 2] - 1.);
+          for (unsigned int b = 0; b < n_columns; ++b)
+            row[b] *= scale;
+          for (unsigned int c = 0; c < dim; ++c)
+            result.vectors[6 * a + c] *= scale;
+        }
+        row[n_columns - 1] = coverage > 0. ? row[n_columns - 2] / coverage : 0.;
+      }
       return result;
     }
 
