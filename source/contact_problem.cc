@@ -161,8 +161,7 @@ namespace Nodus
   void ContactProblem::Implementation::run()
   {
     summary();
-    system.bulk.clear();
-    solid->make_sparsity(boundary_conditions->homogeneous_constraints(), system.bulk);
+    solid->make_sparsity(system.bulk);
     linear_solver =
         make_linear_solver(parameters.linear_solver, surfaces->layout(), rigid_body_data(dof_handler, *mapping));
     vtu    = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, *mapping, materials);

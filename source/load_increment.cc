@@ -242,9 +242,7 @@ namespace Nodus
     const double length = std::max(moved.linfty_norm(), length_scale);
     if (stiffness_scale == 0.)
     {
-      for (const auto i : surfaces->layout().owned[0])
-        stiffness_scale = std::max(stiffness_scale, std::abs(system.bulk.diag_element(i)));
-      stiffness_scale = dealii::Utilities::MPI::max(stiffness_scale, communicator);
+      stiffness_scale = system.bulk.largest_diagonal();
     }
     // The last term is round-off: without it a body that only translates would be measured against its own noise.
     const double scale = std::max({internal.linfty_norm(),

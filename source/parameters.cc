@@ -29,7 +29,8 @@ namespace Nodus
         {BoundaryConditionParameters::Type::spring, "spring"}};
 
     const Names<LinearSolverParameters::Type> solver_names = {{LinearSolverParameters::Type::direct, "direct"},
-                                                              {LinearSolverParameters::Type::block, "block"}};
+                                                              {LinearSolverParameters::Type::block, "block"},
+                                                              {LinearSolverParameters::Type::condensed, "condensed"}};
 
     const Names<unsigned int> component_names = {{0, "x"}, {1, "y"}, {2, "z"}};
 
@@ -169,15 +170,18 @@ namespace Nodus
 
     void add(ParameterHandler &prm, LinearSolverParameters &solver)
     {
-      add_choice(prm,
-                 "Type",
-                 solver.type,
-                 solver_names,
-                 "Linear solver [-]: direct is MUMPS, block is FGMRES with algebraic multigrid for large models.");
-      prm.add_parameter("Tolerance", solver.tolerance, "Block solver: relative residual [-].", positive);
+      add_choice(
+          prm,
+          "Type",
+          solver.type,
+          solver_names,
+          "Linear solver [-]: direct is MUMPS; condensed eliminates multipliers and held slave displacements and "
+          "needs conjugate gradients with algebraic multigrid (large models); block is FGMRES on all unknowns, "
+          "for what cannot be condensed: integration points and consistent weights.");
+      prm.add_parameter("Tolerance", solver.tolerance, "Block and condensed solver: relative residual [-].", positive);
       prm.add_parameter("Maximum iterations",
                         solver.maximum_iterations,
-                        "Block solver: iterations before it gives up [-].",
+                        "Block and condensed solver: iterations before they give up [-].",
                         at_least_one);
       prm.add_parameter("Augmentation factor",
                         solver.augmentation_factor,

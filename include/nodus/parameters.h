@@ -166,11 +166,12 @@ namespace Nodus
     enum class Type
     {
       direct,
-      block
+      block,
+      condensed
     };
     Type         type                = Type::direct;
-    double       tolerance           = 1e-10; ///< block: relative residual
-    unsigned int maximum_iterations  = 500;   ///< block: FGMRES iterations
+    double       tolerance           = 1e-10; ///< block, condensed: relative residual
+    unsigned int maximum_iterations  = 500;   ///< block, condensed: Krylov iterations
     double       augmentation_factor = 2.;    ///< block: gamma, in units of the diagonal of the stiffness
   };
 

@@ -12,7 +12,6 @@ namespace dealii
 {
   namespace TrilinosWrappers
   {
-    class SparseMatrix;
     namespace MPI
     {
       class Vector;
@@ -29,12 +28,11 @@ namespace Nodus
 {
   constexpr unsigned int dim = 3;
 
-  using Vector       = dealii::TrilinosWrappers::MPI::Vector;
-  using BlockVector  = dealii::TrilinosWrappers::MPI::BlockVector;
-  using SparseMatrix = dealii::TrilinosWrappers::SparseMatrix;
-  using DoFIndex     = dealii::types::global_dof_index;
-  using Point        = dealii::Point<dim>;
-  using Vector3      = dealii::Tensor<1, dim>;
+  using Vector      = dealii::TrilinosWrappers::MPI::Vector;
+  using BlockVector = dealii::TrilinosWrappers::MPI::BlockVector;
+  using DoFIndex    = dealii::types::global_dof_index;
+  using Point       = dealii::Point<dim>;
+  using Vector3     = dealii::Tensor<1, dim>;
 
   /// Status of a slave node; stick and slip are both "contact" (S = 1).
   enum class ContactStatus : unsigned char

@@ -272,7 +272,9 @@ namespace Nodus
     layout_.communicator  = communicator;
     layout_.n_u           = dof_handler.n_dofs();
     layout_.n_slave_nodes = slave_nodes_.size();
-    layout_.owned[0]      = owned;
+    for (unsigned int k = owned_range_.first; k < owned_range_.second; ++k)
+      layout_.slave_nodes.push_back(nodes_[slave_nodes_[k].node].dofs[0] / dim);
+    layout_.owned[0] = owned;
     layout_.owned[1].set_size(slave_nodes_.size());
     layout_.owned[1].add_range(owned_range_.first, owned_range_.second);
     layout_.owned[2].set_size(2 * slave_nodes_.size());

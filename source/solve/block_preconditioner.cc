@@ -1,14 +1,10 @@
 #include <nodus/solve/block_preconditioner.h>
 
-#include <deal.II/base/mpi.h>
-
 #include <Eigen/Dense>
 #include <Epetra_Map.h>
-#include <Teuchos_ParameterList.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace Nodus
 {
@@ -23,12 +19,11 @@ namespace Nodus
       : system_(system)
       , multiplier_part_(std::make_unique<Epetra_MultiVector>(system.B().RowMap(), 1))
   {
-    augmented_rhs_.reinit(system.displacement_ownership().owned(),
-                          dynamic_cast<const Epetra_MpiComm &>(system.bulk().Comm()).Comm());
+    augmented_rhs_.reinit(system.displacement_ownership().owned(), system.bulk().map().communicator());
     make_multiplier_blocks(augmentation_factor);
     make_augmented_matrix();
-    make_rigid_body_modes(rigid_body_data);
-    make_multigrid();
+    // three sweeps pay off against the stiff couplings of the augmentation
+    multigrid_ = std::make_unique<Multigrid>(*augmented_, rigid_body_modes(system.bulk(), rigid_body_data), 3);
   }
 
   void BlockPreconditioner::make_multiplier_blocks(const double augmentation_factor)
@@ -62,7 +57,7 @@ namespace Nodus
 
   void BlockPreconditioner::make_augmented_matrix()
   {
-    const Epetra_CrsMatrix &B = system_.B(), &bulk = system_.bulk();
+    const Epetra_CrsMatrix &B = system_.B();
 
     // For every displacement (local column of B), the slave nodes whose rows hold it.
     std::vector<std::vector<int>> nodes_of_column(B.NumMyCols());
@@ -130,100 +125,8 @@ namespace Nodus
     }
     entries = system_.displacement_ownership().exchange(std::move(entries));
 
-    // bulk plus entries, with merged pattern
-    std::vector<int> extra_length(std::max(1, bulk.NumMyRows()), 0), length(extra_length.size());
-    for (const MatrixEntry &e : entries)
-      ++extra_length[bulk.LRID(static_cast<int>(e.row))];
-    for (int r = 0; r < bulk.NumMyRows(); ++r)
-      length[r] = bulk.NumMyEntries(r) + extra_length[r];
-    augmented_ = std::make_unique<Epetra_CrsMatrix>(Copy, bulk.RowMap(), length.data(), false);
-
-    std::vector<int>    merged_columns;
-    std::vector<double> merged_values;
-    auto                next = entries.begin();
-    for (int r = 0; r < bulk.NumMyRows(); ++r)
-    {
-      int     n;
-      double *values;
-      int    *columns;
-      bulk.ExtractMyRowView(r, n, values, columns);
-      merged_columns.resize(n);
-      merged_values.assign(values, values + n);
-      for (int k = 0; k < n; ++k)
-        merged_columns[k] = bulk.GCID(columns[k]);
-      for (int k = 0; k < extra_length[r]; ++k, ++next)
-      {
-        merged_columns.push_back(next->column);
-        merged_values.push_back(next->value);
-      }
-      // Epetra merges columns that occur twice when it completes the matrix.
-      augmented_->InsertGlobalValues(bulk.GRID(r), merged_values.size(), merged_values.data(), merged_columns.data());
-    }
-    augmented_->FillComplete(bulk.DomainMap(), bulk.RangeMap());
-    augmented_->OptimizeStorage();
-  }
-
-  void BlockPreconditioner::make_rigid_body_modes(const RigidBodyData &data)
-  {
-    const Epetra_CrsMatrix &bulk = system_.bulk();
-    const MPI_Comm          comm = dynamic_cast<const Epetra_MpiComm &>(bulk.Comm()).Comm();
-    const std::size_t       n    = bulk.NumMyRows();
-    if (dealii::Utilities::MPI::max(data.support_points.size() == n && data.component.size() == n ? 0 : 1, comm) != 0)
-      throw SolverFailure("Block solver: the rigid-body data does not match the displacements of the system.");
-
-    Vector3 centre, extent;
-    for (unsigned int d = 0; d < dim; ++d)
-    {
-      double lower = std::numeric_limits<double>::max(), upper = std::numeric_limits<double>::lowest();
-      for (const Point &p : data.support_points)
-      {
-        lower = std::min(lower, p[d]);
-        upper = std::max(upper, p[d]);
-      }
-      lower     = dealii::Utilities::MPI::min(lower, comm);
-      upper     = dealii::Utilities::MPI::max(upper, comm);
-      centre[d] = .5 * (lower + upper);
-      extent[d] = upper - lower;
-    }
-    const double length = extent.norm();
-
-    modes_.assign(6 * std::max<std::size_t>(n, 1), 0.);
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      int     row_length;
-      double *values;
-      int    *columns;
-      bulk.ExtractMyRowView(i, row_length, values, columns);
-      bool constrained = true; // only a diagonal
-      for (int k = 0; k < row_length && constrained; ++k)
-        constrained = values[k] == 0. || bulk.GCID(columns[k]) == bulk.GRID(i);
-      if (constrained)
-        continue;
-      const Vector3      x = (data.support_points[i] - Point(centre)) / length;
-      const unsigned int c = data.component[i];
-      modes_[c * n + i]    = 1.;
-      // rotation about axis a: e_a x x
-      modes_[(3 + (c + 1) % 3) * n + i] = x[(c + 2) % 3];
-      modes_[(3 + (c + 2) % 3) * n + i] = -x[(c + 1) % 3];
-    }
-  }
-
-  void BlockPreconditioner::make_multigrid()
-  {
-    using AMG = dealii::TrilinosWrappers::PreconditionAMG;
-    AMG::AdditionalData data;
-    data.elliptic              = true;
-    data.smoother_sweeps       = 3; // pays off against the stiff couplings of the augmentation
-    data.aggregation_threshold = 0.;
-    Teuchos::ParameterList              parameters;
-    std::unique_ptr<Epetra_MultiVector> unused;
-    data.set_parameters(parameters, unused, *augmented_);
-    parameters.set("PDE equations", 3);
-    parameters.set("null space: type", "pre-computed");
-    parameters.set("null space: dimension", 6);
-    parameters.set("null space: vectors", modes_.data());
-    parameters.set("null space: add default vectors", false);
-    multigrid_.initialize(*augmented_, parameters);
+    augmented_ = std::make_unique<CorrectedMatrix>(
+        system_.bulk(), std::vector<char>(dim * system_.bulk().map().size(), 0), entries);
   }
 
   void BlockPreconditioner::apply_multiplier_blocks(Epetra_MultiVector &m) const
@@ -244,7 +147,7 @@ namespace Nodus
     system_.B().Multiply(true, m, f);
     f.Update(1., src.block(0).trilinos_vector(), 1.);
 
-    multigrid_.vmult(dst.block(0), augmented_rhs_);
+    multigrid_->vmult(dst.block(0), augmented_rhs_);
 
     Epetra_MultiVector &result = dst.block(1).trilinos_vector();
     system_.B().Multiply(false, dst.block(0).trilinos_vector(), result);

@@ -2,8 +2,6 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <Epetra_CrsMatrix.h>
-#include <Epetra_Map.h>
 #include <dmumps_c.h>
 
 #include <algorithm>
@@ -167,18 +165,18 @@ namespace Nodus
       ++n_entries;
     };
 
-    const Epetra_CrsMatrix &bulk = system.bulk.trilinos_matrix();
-    for (int r = 0; r < bulk.NumMyRows(); ++r)
-    {
-      int     n;
-      double *values;
-      int    *indices;
-      bulk.ExtractMyRowView(r, n, values, indices);
-      const int row = bulk.GRID(r);
-      for (int k = 0; k < n; ++k)
-        if (const int column = bulk.GCID(indices[k]); row <= column)
-          add(row, column, values[k]);
-    }
+    const NodeMatrix &bulk  = system.bulk;
+    const NodeMap    &nodes = bulk.map();
+    for (unsigned int r = 0; r < nodes.n_owned(); ++r)
+      bulk.for_row(r,
+                   [&](const unsigned int c, const double *block, const bool transposed)
+                   {
+                     const DoFIndex row = dim * nodes.global(r), column = dim * nodes.global(c);
+                     if (!transposed && row <= column)
+                       for (unsigned int i = 0; i < dim; ++i)
+                         for (unsigned int j = row == column ? i : 0; j < dim; ++j)
+                           add(row + i, column + j, block[dim * i + j]);
+                   });
     const TripletMatrix &contact = system.contact;
     for (std::size_t k = 0; k < contact.value.size(); ++k)
       if (contact.row[k] <= contact.column[k])

@@ -1,4 +1,5 @@
 #include <nodus/solve/block_solver.h>
+#include <nodus/solve/condensed_solver.h>
 #include <nodus/solve/direct_solver.h>
 #include <nodus/solve/linear_solver.h>
 
@@ -15,6 +16,8 @@ namespace Nodus
   {
     if (parameters.type == LinearSolverParameters::Type::direct)
       return std::make_unique<DirectSolver>(layout);
+    if (parameters.type == LinearSolverParameters::Type::condensed)
+      return std::make_unique<CondensedSolver>(parameters, rigid_body_data);
     return std::make_unique<BlockSolver>(parameters, rigid_body_data);
   }
 } // namespace Nodus

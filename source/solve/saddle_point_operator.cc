@@ -18,7 +18,7 @@ namespace Nodus
       , communicator_(communicator)
   {
     if (!owned.is_ascending_and_one_to_one(communicator))
-      throw SolverFailure("Block solver: each rank must own one range of unknowns, in the order of the ranks.");
+      throw SolverFailure("Krylov solver: each rank must own one range of unknowns, in the order of the ranks.");
     for (const DoFIndex n : dealii::Utilities::MPI::all_gather(communicator, owned.n_elements()))
       start_.push_back(start_.back() + n);
   }
@@ -58,10 +58,10 @@ namespace Nodus
     for (const auto &[source, received] : dealii::Utilities::MPI::some_to_some(communicator_, outgoing))
       entries.insert(entries.end(), received.begin(), received.end());
 
-    std::sort(entries.begin(),
-              entries.end(),
-              [](const MatrixEntry &a, const MatrixEntry &b)
-              { return a.row != b.row ? a.row < b.row : a.column < b.column; });
+    const auto before = [](const MatrixEntry &a, const MatrixEntry &b)
+    { return a.row != b.row ? a.row < b.row : a.column < b.column; };
+    if (!std::is_sorted(entries.begin(), entries.end(), before))
+      std::sort(entries.begin(), entries.end(), before);
     std::size_t n = 0;
     for (const MatrixEntry &e : entries)
       if (n > 0 && entries[n - 1].row == e.row && entries[n - 1].column == e.column)
@@ -123,7 +123,7 @@ namespace Nodus
         C.push_back({to_m(i), to_m(j), -v});
     }
 
-    const Epetra_Map &u_map = static_cast<const Epetra_Map &>(bulk().RowMap());
+    const Epetra_Map &u_map = bulk().map().row_map();
     const Epetra_Map  m_map = owned_m_.make_trilinos_map(layout.communicator, false);
     uu_entries_             = u_ownership_.exchange(std::move(uu));
     B_                      = make_matrix(m_ownership_.exchange(std::move(B)), m_map, u_map);
@@ -132,16 +132,17 @@ namespace Nodus
       C_uu_ = make_matrix(uu_entries_, u_map, u_map);
     equilibrate();
     const double norms =
-        bulk().NormFrobenius() + B_->NormFrobenius() + C_->NormFrobenius() + (C_uu_ ? C_uu_->NormFrobenius() : 0.);
+        bulk().norm_squared() + B_->NormFrobenius() + C_->NormFrobenius() + (C_uu_ ? C_uu_->NormFrobenius() : 0.);
     if (!std::isfinite(norms))
-      throw SolverFailure("Block solver: the matrix holds a value that is not finite.");
+      throw SolverFailure("Krylov solver: the matrix holds a value that is not finite.");
   }
 
   void SaddlePointOperator::equilibrate()
   {
-    const Epetra_Map &u_map = static_cast<const Epetra_Map &>(bulk().RowMap());
-    Epetra_Vector     diagonal(u_map), part(u_map);
-    bulk().ExtractDiagonalCopy(diagonal);
+    const Epetra_Map         &u_map = bulk().map().row_map();
+    Epetra_Vector             diagonal(u_map), part(u_map);
+    const std::vector<double> bulk_diagonal = bulk().diagonal();
+    std::copy(bulk_diagonal.begin(), bulk_diagonal.end(), diagonal.Values());
     if (C_uu_)
     {
       C_uu_->ExtractDiagonalCopy(part);
@@ -192,18 +193,37 @@ namespace Nodus
     C_->RightScale(scale);
   }
 
+  void SaddlePointOperator::apply_stiffness(const Epetra_MultiVector &u, Epetra_MultiVector &f) const
+  {
+    bulk().vmult(f[0], u[0]);
+    if (C_uu_)
+    {
+      Epetra_MultiVector part(f.Map(), 1, false);
+      C_uu_->Multiply(false, u, part);
+      f.Update(1., part, 1.);
+    }
+  }
+
+  Eigen::Matrix3d SaddlePointOperator::own_coupling(const DoFIndex node) const
+  {
+    Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
+    const auto      first = std::lower_bound(uu_entries_.begin(),
+                                        uu_entries_.end(),
+                                        dim * node,
+                                        [](const MatrixEntry &e, const DoFIndex row) { return e.row < row; });
+    for (auto e = first; e != uu_entries_.end() && e->row < dim * node + dim; ++e)
+      if (e->column / dim == node)
+        block(e->row % dim, e->column % dim) += e->value;
+    return block;
+  }
+
   void SaddlePointOperator::vmult(BlockVector &dst, const BlockVector &src) const
   {
     const Epetra_MultiVector &u = src.block(0).trilinos_vector(), &m = src.block(1).trilinos_vector();
     Epetra_MultiVector       &f = dst.block(0).trilinos_vector(), &g = dst.block(1).trilinos_vector();
     Epetra_MultiVector        part(f.Map(), 1, false);
 
-    bulk().Multiply(false, u, f);
-    if (C_uu_)
-    {
-      C_uu_->Multiply(false, u, part);
-      f.Update(1., part, 1.);
-    }
+    apply_stiffness(u, f);
     B_->Multiply(true, m, part);
     f.Update(1., part, 1.);
 

@@ -14,9 +14,9 @@
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
-#include <deal.II/lac/sparsity_tools.h>
+#include <deal.II/lac/full_matrix.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -118,11 +118,6 @@ namespace ModelProblem
       for (const auto i : layout.owned[0])
         rigid_body_data.support_points[layout.owned[0].index_within_set(i)] = Point(rotate(support[i]));
 
-      dealii::DynamicSparsityPattern pattern(relevant);
-      dealii::DoFTools::make_sparsity_pattern(dof_handler, pattern, constraints, false);
-      dealii::SparsityTools::distribute_sparsity_pattern(pattern, layout.owned[0], MPI_COMM_WORLD, relevant);
-      system.bulk.reinit(layout.owned[0], layout.owned[0], pattern, MPI_COMM_WORLD);
-
       // The material is isotropic, so a tilted body has the stiffness of the straight one in turned components.
       dealii::Tensor<2, dim> Q;
       for (unsigned int c = 0; c < dim; ++c)
@@ -136,11 +131,27 @@ namespace ModelProblem
       const unsigned int         n = fe.n_dofs_per_cell();
       dealii::FullMatrix<double> matrix(n, n);
       std::vector<dealii::types::global_dof_index> dofs(n);
+
+      // every rank integrates all cells around its nodes
+      std::vector<DoFIndex> cell_nodes, ghosts;
       for (const auto &cell : dof_handler.active_cell_iterators())
-        if (cell->is_locally_owned())
+        if (touches_owned(cell, dofs))
+          for (unsigned int a = 0; a < n / dim; ++a)
+          {
+            cell_nodes.push_back(dofs[dim * a] / dim);
+            if (!layout.owned[0].is_element(dofs[dim * a]))
+              ghosts.push_back(cell_nodes.back());
+          }
+      const auto                map = std::make_shared<NodeMap>(layout.owned[0], ghosts, MPI_COMM_WORLD);
+      std::vector<unsigned int> local_nodes;
+      for (const DoFIndex node : cell_nodes)
+        local_nodes.push_back(map->local(node));
+      system.bulk.reinit(map, local_nodes, n / dim);
+
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (touches_owned(cell, dofs))
         {
           values.reinit(cell);
-          cell->get_dof_indices(dofs);
           for (unsigned int i = 0; i < n; ++i)
             if (const unsigned int c = fe.system_to_component_index(i).first; layout.owned[0].is_element(dofs[i]))
             {
@@ -160,9 +171,24 @@ namespace ModelProblem
                 matrix(i, j) +=
                     values.JxW(q) * (lambda * gi[a] * gj[b] + mu * gi[b] * gj[a] + (a == b ? mu * (gi * gj) : 0.));
               }
-          constraints.distribute_local_to_global(matrix, dofs, system.bulk);
+          for (unsigned int i = 0; i < n; ++i)
+            for (unsigned int j = 0; j < n; ++j)
+            {
+              const bool free = !constraints.is_constrained(dofs[i]) && !constraints.is_constrained(dofs[j]);
+              const auto here = system.bulk.position(map->local(dofs[i] / dim), map->local(dofs[j] / dim));
+              if (here.stored() && !here.transposed() && (free || i == j))
+                system.bulk.block(here.block())[dim * (i % dim) + j % dim] += matrix(i, j);
+            }
         }
-      system.bulk.compress(dealii::VectorOperation::add);
+    }
+
+    template <typename Cell>
+    bool touches_owned(const Cell &cell, std::vector<DoFIndex> &dofs) const
+    {
+      if (cell->is_artificial())
+        return false;
+      cell->get_dof_indices(dofs);
+      return std::any_of(dofs.begin(), dofs.end(), [&](const DoFIndex i) { return layout.owned[0].is_element(i); });
     }
 
     struct Node
@@ -205,6 +231,7 @@ namespace ModelProblem
       for (unsigned int k = 0; k < slave.size(); ++k)
         if (layout.owned[0].is_element(slave[k].dof))
         {
+          layout.slave_nodes.push_back(slave[k].dof / dim);
           layout.owned[1].add_index(k);
           layout.owned[2].add_range(2 * k, 2 * k + 2);
         }

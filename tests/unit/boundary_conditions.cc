@@ -8,9 +8,8 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_q.h>
+#include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
-#include <deal.II/lac/trilinos_precondition.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_vector.h>
 
 #include <cmath>
@@ -79,20 +78,12 @@ namespace
 
   struct Model
   {
-    explicit Model(const unsigned int degree, const bool refined = false)
+    explicit Model(const unsigned int degree)
         : bodies({box()}, communicator)
         , fe(dealii::FE_Q<dim>(degree), dim)
         , dof_handler(bodies.triangulation())
         , mapping(1)
     {
-      if (refined)
-      {
-        auto &triangulation = const_cast<Bodies::Triangulation &>(bodies.triangulation());
-        for (const auto &cell : triangulation.active_cell_iterators())
-          if (cell->is_locally_owned() && cell->center()[1] + cell->center()[2] < 1.5)
-            cell->set_refine_flag();
-        triangulation.execute_coarsening_and_refinement();
-      }
       dof_handler.distribute_dofs(fe);
       dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
       u.reinit(dof_handler.locally_owned_dofs(), relevant, communicator);
@@ -162,12 +153,20 @@ namespace
           (boundary_conditions.homogeneous_constraints().has_inhomogeneities() ? "NO" : "yes"));
   }
 
-  /// Two Newton corrections from a wrong start: the second one has nothing left to do.
-  void uniaxial(const unsigned int degree, const bool refined)
+  struct Operator
   {
-    // the refined part has hanging nodes on the pulled face
-    print("uniaxial test, degree " + std::to_string(degree) + (refined ? ", hanging nodes" : ""));
-    Model                                  model(degree, refined);
+    const NodeMatrix &matrix;
+    void              vmult(Vector &y, const Vector &x) const
+    {
+      matrix.vmult(y.trilinos_vector()[0], x.trilinos_vector()[0]);
+    }
+  };
+
+  /// Two Newton corrections from a wrong start: the second one has nothing left to do.
+  void uniaxial(const unsigned int degree)
+  {
+    print("uniaxial test, degree " + std::to_string(degree));
+    Model                                  model(degree);
     auto                                   boundary_conditions = model.conditions({hold("x = 0", {0}, "", {0}, {"0"}),
                                                                                    hold("y = 0", {2}, "", {1}, {"0"}),
                                                                                    hold("z = 0", {4}, "", {2}, {"0"}),
@@ -175,10 +174,9 @@ namespace
     std::vector<std::unique_ptr<Material>> materials;
     materials.push_back(make_material(box().material));
     const SolidAssembler assembler(model.dof_handler, model.mapping, materials, boundary_conditions.loads());
-    SparseMatrix         K;
+    NodeMatrix           K;
     Vector               rhs, internal, external;
-    assembler.make_sparsity(boundary_conditions.homogeneous_constraints(), K);
-    print("  hanging nodes: " + std::string(model.bodies.triangulation().has_hanging_nodes() ? "yes" : "none"));
+    assembler.make_sparsity(K);
 
     boundary_conditions.set_time(2.);
     Vector u(model.dof_handler.locally_owned_dofs(), communicator);
@@ -186,13 +184,11 @@ namespace
     {
       const auto &constraints = boundary_conditions.increment_constraints(model.u);
       assembler.tangent(model.u, 2., constraints, K, rhs, internal, external);
-      Vector                                     correction(u);
-      dealii::SolverControl                      control(1000, 1e-12);
-      dealii::SolverCG<Vector>                   solver(control);
-      dealii::TrilinosWrappers::PreconditionSSOR preconditioner;
-      preconditioner.initialize(K);
+      Vector                   correction(u);
+      dealii::SolverControl    control(1000, 1e-12);
+      dealii::SolverCG<Vector> solver(control);
       correction = 0.;
-      solver.solve(K, correction, rhs, preconditioner);
+      solver.solve(Operator{K}, correction, rhs, dealii::PreconditionIdentity());
       constraints.distribute(correction);
       u += correction;
       model.u = u;
@@ -207,8 +203,6 @@ namespace
         error = std::max(error, std::abs(u(dof) - (c == 0 ? 0.1 : -0.03) * model.points.at(dof)[c]));
     error = dealii::Utilities::MPI::max(error, communicator);
     print(std::string("  exact displacement (1e-9): ") + (error < 1e-9 ? "yes" : "NO, error " + std::to_string(error)));
-    if (refined)
-      return;
     for (const auto &region : boundary_conditions.reaction_regions())
     {
       double reaction = 0.;
@@ -271,9 +265,7 @@ int main(int argc, char **argv)
   root = dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
   regions(1);
   regions(2);
-  uniaxial(1, false);
-  uniaxial(2, false);
-  uniaxial(1, true);
-  uniaxial(2, true);
+  uniaxial(1);
+  uniaxial(2);
   messages();
 }

@@ -9,7 +9,6 @@
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_q.h>
 #include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_vector.h>
 
 #include <cmath>
@@ -103,7 +102,7 @@ namespace
           std::make_unique<BoundaryConditions>(conditions, bodies, dof_handler, mapping, /* end_time = */ 2.);
       materials.push_back(make_material(parameters.material));
       assembler = std::make_unique<SolidAssembler>(dof_handler, mapping, materials, boundary_conditions->loads());
-      assembler->make_sparsity(none, K);
+      assembler->make_sparsity(K);
       u.reinit(dof_handler.locally_owned_dofs(), relevant, communicator);
       dealii::DoFTools::map_dofs_to_support_points(mapping, dof_handler, points);
     }
@@ -162,7 +161,7 @@ namespace
     std::vector<std::unique_ptr<Material>> materials;
     std::unique_ptr<SolidAssembler>        assembler;
     std::map<DoFIndex, Point>              points;
-    SparseMatrix                           K;
+    NodeMatrix                             K;
     Vector                                 u, internal, external, rhs;
     double                                 time = 1.;
   };
@@ -181,10 +180,17 @@ namespace
   /// Entries gathered on every rank.
   FullMatrix<double> dense(const Model &model)
   {
-    FullMatrix<double> result(model.K.m(), model.K.m());
-    for (const auto row : model.dof_handler.locally_owned_dofs())
-      for (auto entry = model.K.begin(row); entry != model.K.end(row); ++entry)
-        result(row, entry->column()) = entry->value();
+    FullMatrix<double> result(model.dof_handler.n_dofs(), model.dof_handler.n_dofs());
+    const NodeMap     &nodes = model.K.map();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      model.K.for_row(i,
+                      [&](const unsigned int j, const double *block, const bool transposed)
+                      {
+                        for (unsigned int c = 0; c < dim; ++c)
+                          for (unsigned int d = 0; d < dim; ++d)
+                            result(dim * nodes.global(i) + c, dim * nodes.global(j) + d) =
+                                block[transposed ? dim * d + c : dim * c + d];
+                      });
     dealii::Utilities::MPI::sum(result, communicator, result);
     return result;
   }
@@ -193,12 +199,12 @@ namespace
   FullMatrix<double> difference_quotient(Model &model)
   {
     const double       h = 1e-5;
-    FullMatrix<double> result(model.K.m(), model.K.m());
+    FullMatrix<double> result(model.dof_handler.n_dofs(), model.dof_handler.n_dofs());
     Vector             base(model.dof_handler.locally_owned_dofs(), communicator);
     base = model.u;
     // or the first addition to a copy would do it, on one rank only
     base.compress(dealii::VectorOperation::insert);
-    for (DoFIndex column = 0; column < model.K.m(); ++column)
+    for (DoFIndex column = 0; column < model.dof_handler.n_dofs(); ++column)
       for (const double sign : {1., -1.})
       {
         model.set(base, column, sign * h);
@@ -348,7 +354,7 @@ namespace
     Model model(box(Law::neo_hookean), 1);
     model.set(wavy);
     model.tangent();
-    const double norm = model.K.frobenius_norm();
+    const double norm = std::sqrt(model.K.norm_squared());
     Vector       internal(model.internal);
     model.set([](const Point &X) { return X.distance(Point(1., 1., 1.)) < 1e-6 ? Vector3({-2., 0., 0.}) : Vector3(); });
     unsigned int failures = 0;
@@ -370,7 +376,7 @@ namespace
     model.set(wavy);
     model.tangent();
     internal -= model.internal;
-    check("afterwards the same tangent", std::abs(model.K.frobenius_norm() / norm - 1.), 1e-13);
+    check("afterwards the same tangent", std::abs(std::sqrt(model.K.norm_squared()) / norm - 1.), 1e-13);
     check("afterwards the same forces", internal.linfty_norm(), 1e-13);
   }
 } // namespace

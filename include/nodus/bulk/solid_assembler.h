@@ -3,6 +3,7 @@
 
 #include <nodus/bulk/boundary_conditions.h>
 #include <nodus/bulk/material.h>
+#include <nodus/solve/node_matrix.h>
 #include <nodus/types.h>
 
 #include <deal.II/dofs/dof_handler.h>
@@ -30,19 +31,20 @@ namespace Nodus
     /// @throws SolverFailure on every rank when det F <= 0 anywhere, with cell centre and body.
     void forces(const Vector &u, double t, Vector &internal, Vector &external) const;
 
-    /// As forces(), and in the same sweep the tangent K_t = d(internal - external)/du with @p constraints applied
-    /// (a positive diagonal on constrained rows), and @p rhs = -(internal - external) - K_t b with constraints applied,
-    /// b the inhomogeneities. @p tangent has the sparsity of make_tangent() and is overwritten.
+    /// As forces(), and in the same sweep the tangent K_t = d(internal - external)/du with prescribed displacements
+    /// eliminated (a positive diagonal on their rows), and @p rhs = -(internal - external) - K_t b likewise, b the
+    /// inhomogeneities of @p constraints. @p tangent has the sparsity of make_sparsity() and is overwritten.
     void tangent(const Vector                            &u,
                  double                                   t,
                  const dealii::AffineConstraints<double> &constraints,
-                 SparseMatrix                            &tangent,
+                 NodeMatrix                              &tangent,
                  Vector                                  &rhs,
                  Vector                                  &internal,
                  Vector                                  &external) const;
 
-    /// Gives @p matrix the sparsity pattern of the tangent.
-    void make_sparsity(const dealii::AffineConstraints<double> &constraints, SparseMatrix &matrix) const;
+    /// Gives @p tangent its pattern; the last matrix that got one is that of tangent(). Meshes with hanging nodes are
+    /// not supported.
+    void make_sparsity(NodeMatrix &tangent) const;
 
     ~SolidAssembler();
 

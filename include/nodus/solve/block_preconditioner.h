@@ -1,10 +1,11 @@
 #ifndef nodus_solve_block_preconditioner_h
 #define nodus_solve_block_preconditioner_h
 
-#include <nodus/solve/linear_solver.h>
+#include <nodus/solve/corrected_matrix.h>
+#include <nodus/solve/multigrid.h>
 #include <nodus/solve/saddle_point_operator.h>
 
-#include <deal.II/lac/trilinos_precondition.h>
+#include <deal.II/lac/trilinos_vector.h>
 
 #include <array>
 #include <memory>
@@ -33,17 +34,14 @@ namespace Nodus
   private:
     void make_multiplier_blocks(double augmentation_factor);
     void make_augmented_matrix();
-    void make_rigid_body_modes(const RigidBodyData &data);
-    void make_multigrid();
 
     /// D^-1 times @p m, in place.
     void apply_multiplier_blocks(Epetra_MultiVector &m) const;
 
     const SaddlePointOperator                  &system_;
     std::vector<std::array<double, 9>>          D_inverse_; ///< per owned slave node, row by row
-    std::unique_ptr<Epetra_CrsMatrix>           augmented_;
-    std::vector<double>                         modes_; ///< six, one after the other, owned dofs
-    dealii::TrilinosWrappers::PreconditionAMG   multigrid_;
+    std::unique_ptr<CorrectedMatrix>            augmented_;
+    std::unique_ptr<Multigrid>                  multigrid_;
     mutable Vector                              augmented_rhs_;
     mutable std::unique_ptr<Epetra_MultiVector> multiplier_part_;
   };

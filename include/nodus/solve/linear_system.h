@@ -1,11 +1,11 @@
 #ifndef nodus_solve_linear_system_h
 #define nodus_solve_linear_system_h
 
+#include <nodus/solve/node_matrix.h>
 #include <nodus/types.h>
 
 #include <deal.II/base/index_set.h>
 #include <deal.II/lac/trilinos_parallel_block_vector.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <array>
 #include <vector>
@@ -23,6 +23,7 @@ namespace Nodus
     std::array<dealii::IndexSet, 3> owned; ///< of u, lambda, Lambda
     DoFIndex                        n_u;
     DoFIndex                        n_slave_nodes;
+    std::vector<DoFIndex>           slave_nodes; ///< of the owned ones: global displacement node, its dofs are 3i + c
 
     DoFIndex lambda(const DoFIndex k) const
     {
@@ -67,11 +68,11 @@ namespace Nodus
   ///     [ B             -C  ] [dm] = [ rhs_m ],   m = (lambda, Lambda), C >= 0 and coupled only
   ///                                               within a slave node unless the weights are `consistent`
   ///
-  /// bulk has its constraints applied: constrained rows hold a positive diagonal only and no contact coupling.
+  /// Prescribed displacements are eliminated: their rows hold a positive diagonal only and no contact coupling.
   struct LinearSystem
   {
     const BlockLayout *layout;
-    SparseMatrix       bulk;
+    NodeMatrix         bulk;
     TripletMatrix      contact;
     BlockVector        rhs;
     /// Per owned slave node, per multiplier: scale s > 0 for symmetric row and column equilibration

@@ -3,6 +3,7 @@
 
 #include <nodus/solve/linear_system.h>
 
+#include <Eigen/Core>
 #include <Epetra_CrsMatrix.h>
 
 #include <memory>
@@ -69,9 +70,9 @@ namespace Nodus
     /// 2-norm of a residual in the units of the system.
     double unscaled_norm(const BlockVector &residual) const;
 
-    const Epetra_CrsMatrix &bulk() const
+    const NodeMatrix &bulk() const
     {
-      return system_.bulk.trilinos_matrix();
+      return system_.bulk;
     }
     const Epetra_CrsMatrix &B() const
     {
@@ -90,6 +91,15 @@ namespace Nodus
     {
       return u_ownership_;
     }
+    /// Global displacement node of each owned slave node.
+    const std::vector<DoFIndex> &slave_nodes() const
+    {
+      return system_.layout->slave_nodes;
+    }
+    /// f = (bulk + C_uu) u, over the owned displacements.
+    void apply_stiffness(const Epetra_MultiVector &u, Epetra_MultiVector &f) const;
+    /// C_uu between the components of an owned node.
+    Eigen::Matrix3d own_coupling(DoFIndex node) const;
     /// Stiffness that each owned multiplier sees, |B_i|^2 / (B diag(K)^-1 B^T)_ii; 0 for multipliers without coupling.
     const std::vector<double> &stiffness() const
     {

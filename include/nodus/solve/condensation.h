@@ -1,0 +1,123 @@
+#ifndef nodus_solve_condensation_h
+#define nodus_solve_condensation_h
+
+#include <nodus/solve/saddle_point_operator.h>
+
+#include <deal.II/lac/trilinos_vector.h>
+
+#include <Eigen/Dense>
+
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+namespace Nodus
+{
+  /// A system whose constraints do not give the displacements of the slave nodes: it needs another solver.
+  class NotCondensable : public std::runtime_error
+  {
+  public:
+    using std::runtime_error::runtime_error;
+  };
+
+  /// Exact elimination of the multipliers and of the slave displacements that they hold (theory section 7).
+  ///
+  /// The three multipliers of a slave node are turned until their compliance C is diagonal. Where it vanishes the row
+  /// of B is a constraint b u = g, which gives the displacement of the slave node along b by that of other nodes;
+  /// elsewhere m = (b u - g)/c adds the stiffness b^T b/c. So u = T y + u_g, where y are displacements, at slave nodes
+  /// with constraints in a basis of their own, and
+  ///
+  ///     T^T A T y = T^T (f + B^T D g - A u_g),   A = K + C_uu + B^T D B,   D = 1/c on rows that are no constraints.
+  class Condensation
+  {
+  public:
+    /// Keeps a reference to @p system. Collective. @throws NotCondensable, on every rank
+    explicit Condensation(const SaddlePointOperator &system);
+    ~Condensation();
+
+    /// y = T^T A T x.
+    void vmult(Vector &y, const Vector &x) const;
+
+    /// The condensed right-hand side that belongs to @p b; keeps u_g.
+    void condense(const BlockVector &b, Vector &rhs);
+    /// Displacements and multipliers @p x that belong to the solution @p y.
+    void expand(const Vector &y, const BlockVector &b, BlockVector &x) const;
+
+    /// T^T A T in the form that multigrid takes: the degrees of freedom of K that T replaces (of all local nodes), and
+    /// what comes in their place. Friction enters by its part along the rows of B. Collective.
+    const std::vector<char> &taken_out() const
+    {
+      return taken_out_;
+    }
+    std::vector<MatrixEntry> correction() const;
+
+    /// Turns modes of the owned displacements, one after the other, into the unknowns y.
+    void transform_modes(std::vector<double> &modes) const;
+
+    /// What T does to each owned slave node: equal for equal constraints.
+    std::vector<char> signature() const;
+
+  private:
+    using Matrix3 = Eigen::Matrix3d;
+    struct Coupling
+    {
+      DoFIndex node; ///< global
+      Matrix3  block;
+    };
+    struct Site
+    {
+      unsigned int          node;                ///< local, owned
+      Matrix3               turn;                ///< columns: combinations of the multipliers
+      Eigen::Vector3d       flexibility_inverse; ///< 1/c of each combination, 0 for constraints
+      unsigned int          n_constraints = 0;   ///< the first directions of the basis
+      unsigned int          n_directions  = 0;   ///< with the stiff ones, which stay unknowns: jumps
+      unsigned int          combination[3];      ///< that gives each direction
+      Matrix3               basis;               ///< columns
+      double                diagonal = 0.;       ///< mean diagonal stiffness of the node
+      bool                  coupled  = false;    ///< to constraints of other slave nodes
+      std::vector<Coupling> rows;                ///< turned rows of B, the own node first
+    };
+    /// Row of T: u = own y + sum of block y of others.
+    struct Row
+    {
+      Matrix3               own;
+      std::vector<Coupling> others;
+    };
+    struct Cluster; ///< constraints that see each other's displacements, known to every rank
+
+    void make_sites();
+    void classify(Site &site, const Matrix3 &C) const;
+    void find_coupled_sites();
+    void make_rows();
+    void make_cluster();
+    void fetch_ghost_rows();
+    void make_transformation();
+    /// Inverse of the first @p n constraint rows along the basis, in a matrix that is zero beyond.
+    Matrix3      constraint_inverse(const Site &site, unsigned int n) const;
+    unsigned int owner(DoFIndex node) const;
+    /// Asks the owners of @p nodes for numbers about them. Collective.
+    std::map<DoFIndex, std::vector<double>> ask(const std::vector<DoFIndex>                            &nodes,
+                                                const std::function<std::vector<double>(unsigned int)> &answer) const;
+    /// Solves for the constraint displacements (transposed: forces) of the cluster, in place per site and direction.
+    void solve_cluster(std::vector<Eigen::Vector3d> &values, bool transposed) const;
+
+    void apply_stiffness(Epetra_MultiVector &m) const; ///< m = D m
+    void apply_matrix(const Epetra_MultiVector &u, Epetra_MultiVector &f) const;
+    void apply_transformation(const Epetra_MultiVector &y, Epetra_MultiVector &u) const;
+    void apply_transposed(const Epetra_MultiVector &f, Epetra_MultiVector &y) const;
+
+    const SaddlePointOperator                   &system_;
+    const NodeMap                               &nodes_;
+    std::vector<Site>                            sites_; ///< of the owned slave nodes
+    std::vector<std::unique_ptr<Row>>            rows_;  ///< by local node; null where T is the identity
+    std::unique_ptr<Cluster>                     cluster_;
+    std::vector<char>                            taken_out_;
+    std::vector<std::pair<unsigned int, double>> eliminated_; ///< owned unknowns without meaning, and a diagonal
+    std::unique_ptr<Epetra_CrsMatrix>            T_;          ///< rows that are not those of the identity
+    Vector                                       particular_; ///< u_g
+    mutable Epetra_MultiVector                   u_, f_, part_, multiplier_;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,288 @@
+#include <nodus/bulk/face_table.h>
+#include <nodus/bulk/loads.h>
+
+#include <deal.II/fe/fe_values.h>
+
+#include <limits>
+
+namespace Nodus
+{
+  using namespace dealii;
+
+  namespace
+  {
+    using Load         = BoundaryConditions::Load;
+    using Type         = BoundaryConditionParameters::Type;
+    using CellIterator = DoFHandler<dim>::active_cell_iterator;
+
+    /// Quadrature point of a loaded face.
+    struct FacePoint
+    {
+      Point   X;
+      Vector3 tangent[2]; ///< dX/d(unit coordinate), their cross product points out of the body
+      double  weight;     ///< on the unit face
+      double  area;       ///< weight times reference area
+    };
+
+    struct LoadedFace
+    {
+      Load                  *load;
+      unsigned int           face;
+      std::vector<FacePoint> points;
+      std::vector<double>    values; ///< of the load at its current time: [point][component]
+    };
+
+    struct LoadedCell
+    {
+      CellIterator            cell;
+      std::vector<Load *>     body_forces;
+      std::vector<LoadedFace> faces;
+      dealii::Vector<double>  dead; ///< forces at the current time that do not depend on the displacement
+    };
+  } // namespace
+
+  struct Loads::Implementation
+  {
+    Implementation(const DoFHandler<dim>                        &dof_handler,
+                   const Mapping<dim>                           &mapping,
+                   const std::vector<std::unique_ptr<Material>> &materials,
+                   std::vector<Load>                            &loads)
+        : dof_handler(dof_handler)
+        , mapping(mapping)
+        , materials(materials)
+        , loads(loads)
+        , volume(mapping,
+                 dof_handler.get_fe(),
+                 QGauss<dim>(dof_handler.get_fe().degree + 1),
+                 update_values | update_quadrature_points | update_JxW_values)
+    {
+      for (const auto face : GeometryInfo<dim>::face_indices())
+        faces.emplace_back(dof_handler.get_fe().base_element(0), face);
+    }
+
+    void add_cell(const CellIterator &cell);
+    void evaluate(double t);
+    void evaluate_dead_loads(LoadedCell &loaded);
+    void add_pressure(const LoadedFace &loaded, const Cell &cell) const;
+    void add_springs(const LoadedFace &loaded, const Cell &cell) const;
+
+    unsigned int dof(const unsigned int node, const unsigned int component) const
+    {
+      return dof_handler.get_fe().component_to_system_index(component, node);
+    }
+    const Material &material(const CellIterator &cell) const
+    {
+      return *materials[cell->material_id()];
+    }
+
+    const DoFHandler<dim>                        &dof_handler;
+    const Mapping<dim>                           &mapping;
+    const std::vector<std::unique_ptr<Material>> &materials;
+    std::vector<Load>                            &loads;
+    FEValues<dim>                                 volume;
+    std::vector<FaceTable>                        faces;
+    std::vector<int>                              load_of; ///< per cell: index into loaded_cells or -1
+    std::vector<LoadedCell>                       loaded_cells;
+    double                                        time = std::numeric_limits<double>::quiet_NaN();
+  };
+
+  void Loads::Implementation::add_cell(const CellIterator &cell)
+  {
+    LoadedCell found;
+    found.cell = cell;
+    for (auto &load : loads)
+    {
+      if (load.parameters->type == Type::body_force)
+      {
+        if (load.region.selects_cell(mapping, cell))
+          found.body_forces.push_back(&load);
+        continue;
+      }
+      for (const auto face : cell->face_indices())
+        if (load.region.selects_face(mapping, cell, face))
+        {
+          const FaceTable &table = faces[face];
+          FEValues<dim>    values(mapping,
+                               dof_handler.get_fe(),
+                               Quadrature<dim>(table.points),
+                               update_quadrature_points | update_jacobians);
+          values.reinit(cell);
+          LoadedFace loaded;
+          loaded.load = &load;
+          loaded.face = face;
+          for (const auto q : values.quadrature_point_indices())
+          {
+            FacePoint point;
+            point.X = values.quadrature_point(q);
+            for (unsigned int s = 0; s < 2; ++s)
+              for (unsigned int i = 0; i < dim; ++i)
+                point.tangent[s][i] = values.jacobian(q)[i][table.direction[s]];
+            point.weight = table.weights[q];
+            point.area   = point.weight * cross_product_3d(point.tangent[0], point.tangent[1]).norm();
+            loaded.points.push_back(point);
+          }
+          found.faces.push_back(std::move(loaded));
+        }
+    }
+    load_of.push_back(-1);
+    if (!found.body_forces.empty() || !found.faces.empty())
+    {
+      found.dead.reinit(dof_handler.get_fe().n_dofs_per_cell());
+      load_of.back() = loaded_cells.size();
+      loaded_cells.push_back(std::move(found));
+    }
+  }
+
+  void Loads::Implementation::evaluate(const double t)
+  {
+    if (t == time)
+      return;
+    for (auto &load : loads)
+      load.value->set_time(t);
+    for (auto &loaded : loaded_cells)
+    {
+      for (auto &face : loaded.faces)
+      {
+        face.values.clear();
+        for (const auto &point : face.points)
+          for (unsigned int c = 0; c < face.load->value->n_components; ++c)
+            face.values.push_back(face.load->value->value(point.X, c));
+      }
+      evaluate_dead_loads(loaded);
+    }
+    time = t;
+  }
+
+  void Loads::Implementation::evaluate_dead_loads(LoadedCell &loaded)
+  {
+    loaded.dead = 0.;
+    if (!loaded.body_forces.empty())
+      volume.reinit(loaded.cell);
+    for (const auto *load : loaded.body_forces)
+      for (const auto q : volume.quadrature_point_indices())
+        for (unsigned int c = 0; c < load->parameters->components.size(); ++c)
+        {
+          const double force = load->value->value(volume.quadrature_point(q), c) * volume.JxW(q);
+          for (unsigned int a = 0; a < dof_handler.get_fe().base_element(0).n_dofs_per_cell(); ++a)
+          {
+            const unsigned int i = dof(a, load->parameters->components[c]);
+            loaded.dead(i) += force * volume.shape_value(i, q);
+          }
+        }
+    for (const auto &face : loaded.faces)
+    {
+      const FaceTable &table = faces[face.face];
+      const auto      &load  = *face.load->parameters;
+      for (unsigned int q = 0; q < face.points.size(); ++q)
+      {
+        Vector3 force;
+        if (load.type == Type::traction)
+          for (unsigned int c = 0; c < load.components.size(); ++c)
+            force[load.components[c]] = face.values[q * load.components.size() + c] * face.points[q].area;
+        else if (load.type == Type::pressure && material(loaded.cell).small_strain())
+          force = -face.values[q] * face.points[q].weight *
+                  cross_product_3d(face.points[q].tangent[0], face.points[q].tangent[1]);
+        for (unsigned int a = 0; a < table.nodes.size(); ++a)
+          for (unsigned int i = 0; i < dim; ++i)
+            loaded.dead(dof(table.nodes[a], i)) += table.value[q][a] * force[i];
+      }
+    }
+  }
+
+  /// Follower pressure: f_a = - int p N_a (t_0 x t_1) with the current tangents t. Of its derivative
+  /// - int p N_a [v_b] du_b, v_b = N_b,0 t_1 - N_b,1 t_0, the symmetric half is kept: exact for uniform pressure when
+  /// the edge of the loaded patch is held or the patch is closed, since the rest is an integral along that edge.
+  void Loads::Implementation::add_pressure(const LoadedFace &loaded, const Cell &cell) const
+  {
+    const FaceTable     &table = faces[loaded.face];
+    const unsigned int   n     = table.nodes.size();
+    std::vector<Vector3> v(n);
+    for (unsigned int q = 0; q < loaded.points.size(); ++q)
+    {
+      Vector3 t[2] = {loaded.points[q].tangent[0], loaded.points[q].tangent[1]};
+      for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int s = 0; s < 2; ++s)
+            t[s][i] += cell.u[dof(table.nodes[a], i)] * table.gradient[s][q][a];
+      const double  p     = loaded.values[q] * loaded.points[q].weight;
+      const Vector3 force = -p * cross_product_3d(t[0], t[1]);
+      for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int i = 0; i < dim; ++i)
+          cell.external(dof(table.nodes[a], i)) += table.value[q][a] * force[i];
+      if (!cell.tangent)
+        continue;
+      for (unsigned int a = 0; a < n; ++a)
+        v[a] = table.gradient[0][q][a] * t[1] - table.gradient[1][q][a] * t[0];
+      for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int b = 0; b < n; ++b)
+        {
+          const Vector3 w = p / 2. * (table.value[q][a] * v[b] - table.value[q][b] * v[a]);
+          for (unsigned int i = 0; i < dim; ++i)
+          {
+            const unsigned int k = (i + 1) % dim, m = (i + 2) % dim;
+            (*cell.tangent)(dof(table.nodes[a], i), dof(table.nodes[b], k)) += w[m];
+            (*cell.tangent)(dof(table.nodes[a], i), dof(table.nodes[b], m)) -= w[k];
+          }
+        }
+    }
+  }
+
+  void Loads::Implementation::add_springs(const LoadedFace &loaded, const Cell &cell) const
+  {
+    const FaceTable &table      = faces[loaded.face];
+    const auto      &components = loaded.load->parameters->components;
+    for (unsigned int q = 0; q < loaded.points.size(); ++q)
+      for (unsigned int c = 0; c < components.size(); ++c)
+      {
+        const double stiffness = loaded.values[q * components.size() + c] * loaded.points[q].area;
+        double       u         = 0.;
+        for (unsigned int a = 0; a < table.nodes.size(); ++a)
+          u += table.value[q][a] * cell.u[dof(table.nodes[a], components[c])];
+        for (unsigned int a = 0; a < table.nodes.size(); ++a)
+        {
+          const unsigned int i = dof(table.nodes[a], components[c]);
+          cell.internal(i) += stiffness * table.value[q][a] * u;
+          if (cell.tangent)
+            for (unsigned int b = 0; b < table.nodes.size(); ++b)
+              (*cell.tangent)(i, dof(table.nodes[b], components[c])) +=
+                  stiffness * table.value[q][a] * table.value[q][b];
+        }
+      }
+  }
+
+  Loads::Loads(const DoFHandler<dim>                        &dof_handler,
+               const Mapping<dim>                           &mapping,
+               const std::vector<std::unique_ptr<Material>> &materials,
+               std::vector<Load>                            &loads)
+      : implementation_(std::make_unique<Implementation>(dof_handler, mapping, materials, loads))
+  {
+  }
+
+  Loads::~Loads() = default;
+
+  void Loads::add_cell(const CellIterator &cell)
+  {
+    implementation_->add_cell(cell);
+  }
+
+  void Loads::evaluate(const double t)
+  {
+    implementation_->evaluate(t);
+  }
+
+  bool Loads::act_on(const unsigned int cell) const
+  {
+    return implementation_->load_of[cell] >= 0;
+  }
+
+  void Loads::add(const unsigned int number, const Cell &cell) const
+  {
+    const LoadedCell &loaded = implementation_->loaded_cells[implementation_->load_of[number]];
+    cell.external += loaded.dead;
+    for (const auto &face : loaded.faces)
+      if (face.load->parameters->type == Type::spring)
+        implementation_->add_springs(face, cell);
+      else if (face.load->parameters->type == Type::pressure && !implementation_->material(loaded.cell).small_strain())
+        implementation_->add_pressure(face, cell);
+  }
+} // namespace Nodus

@@ -1,0 +1,607 @@
+#include <nodus/solve/condensation.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/mpi.templates.h>
+
+#include <Eigen/SparseCore>
+#include <Eigen/SparseLU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Nodus
+{
+  namespace
+  {
+    using Matrix3 = Eigen::Matrix3d;
+    using Block   = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+    /// Rows of B that are stiffer than this many times the node are constraints to working precision.
+    constexpr double constraint_stiffness = 1e10;
+
+    void append(std::vector<double> &numbers, const Matrix3 &block)
+    {
+      numbers.insert(numbers.end(), block.data(), block.data() + 9);
+    }
+    Matrix3 read(const double *&numbers)
+    {
+      const Matrix3 block = Eigen::Map<const Matrix3>(numbers);
+      numbers += 9;
+      return block;
+    }
+  } // namespace
+
+  /// With the constraint displacements y_c of its sites, M y_c + R y = g; R in terms of the other unknowns.
+  struct Condensation::Cluster
+  {
+    std::map<DoFIndex, unsigned int>                                  first;  ///< row of a node's first constraint
+    std::vector<std::vector<std::pair<DoFIndex, Eigen::RowVector3d>>> others; ///< R, row by row
+    Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> M, M_transposed;
+    unsigned int                                                             size = 0;
+  };
+
+  Condensation::Condensation(const SaddlePointOperator &system)
+      : system_(system)
+      , nodes_(system.bulk().map())
+      , u_(nodes_.row_map(), 1)
+      , f_(nodes_.row_map(), 1)
+      , part_(nodes_.row_map(), 1)
+      , multiplier_(system.B().RowMap(), 1)
+  {
+    rows_.resize(nodes_.size());
+    make_sites();
+    find_coupled_sites();
+    make_rows();
+    make_cluster();
+    fetch_ghost_rows();
+    make_transformation();
+  }
+
+  Condensation::~Condensation() = default;
+
+  unsigned int Condensation::owner(const DoFIndex node) const
+  {
+    return system_.displacement_ownership().owner(dim * node);
+  }
+
+  std::map<DoFIndex, std::vector<double>>
+  Condensation::ask(const std::vector<DoFIndex>                            &nodes,
+                    const std::function<std::vector<double>(unsigned int)> &answer) const
+  {
+    using dealii::Utilities::MPI::some_to_some;
+    std::map<unsigned int, std::vector<DoFIndex>> questions;
+    for (const DoFIndex node : nodes)
+      questions[owner(node)].push_back(node);
+    std::map<unsigned int, std::vector<std::vector<double>>> answers;
+    for (const auto &[rank, asked] : some_to_some(nodes_.communicator(), questions))
+      for (const DoFIndex node : asked)
+        answers[rank].push_back(answer(nodes_.local(node)));
+    std::map<DoFIndex, std::vector<double>> result;
+    for (const auto &[rank, received] : some_to_some(nodes_.communicator(), answers))
+      for (unsigned int k = 0; k < received.size(); ++k)
+        result[questions[rank][k]] = received[k];
+    return result;
+  }
+
+  void Condensation::make_sites()
+  {
+    const Epetra_CrsMatrix &B = system_.B(), &C = system_.C();
+    std::string             failure;
+    sites_.resize(system_.slave_nodes().size());
+    for (unsigned int k = 0; k < sites_.size() && failure.empty(); ++k)
+    {
+      Site &site                         = sites_[k];
+      site.node                          = nodes_.local(system_.slave_nodes()[k]);
+      Matrix3                     C_node = Matrix3::Zero();
+      std::map<DoFIndex, Matrix3> blocks;
+      blocks[system_.slave_nodes()[k]].setZero();
+      for (unsigned int a = 0; a < 3; ++a)
+      {
+        int     length;
+        double *values;
+        int    *columns;
+        C.ExtractMyRowView(3 * k + a, length, values, columns);
+        for (int l = 0; l < length; ++l)
+          if (const int b = C.GCID(columns[l]) - C.GRID(3 * k); b >= 0 && b < 3)
+            C_node(a, b) += values[l];
+          else if (values[l] != 0.)
+            failure = "the multipliers of different slave nodes are coupled";
+        B.ExtractMyRowView(3 * k + a, length, values, columns);
+        for (int l = 0; l < length; ++l)
+        {
+          const DoFIndex dof = B.GCID(columns[l]);
+          blocks.try_emplace(dof / dim, Matrix3::Zero()).first->second(a, dof % dim) += values[l];
+        }
+      }
+      const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(C_node);
+      site.turn = eigen.eigenvectors();
+      site.rows.push_back({system_.slave_nodes()[k], site.turn.transpose() * blocks[system_.slave_nodes()[k]]});
+      for (const auto &[node, block] : blocks)
+        if (node != system_.slave_nodes()[k])
+          site.rows.push_back({node, site.turn.transpose() * block});
+      try
+      {
+        classify(site, eigen.eigenvalues().asDiagonal());
+      }
+      catch (const NotCondensable &error)
+      {
+        failure = error.what();
+      }
+    }
+    if (dealii::Utilities::MPI::max(failure.empty() ? 0 : 1, nodes_.communicator()) != 0)
+      throw NotCondensable(failure.empty() ? "another process has constraints that cannot be condensed" : failure);
+  }
+
+  /// Finds the constraints of a site and its basis: directions of the constraints, those of stiff rows, prescribed
+  /// displacements, and what is left.
+  void Condensation::classify(Site &site, const Matrix3 &C) const
+  {
+    const NodeMatrix &K = system_.bulk();
+    for (unsigned int d = 0; d < dim; ++d)
+      site.diagonal += std::abs(K.diagonal(site.node)[4 * d]) / dim;
+    const Matrix3 &own = site.rows.front().block;
+
+    enum class Kind
+    {
+      constraint,
+      stiff,
+      soft
+    } kind[3];
+    for (unsigned int i = 0; i < 3; ++i)
+    {
+      double square = 0.;
+      for (const Coupling &coupling : site.rows)
+        square += coupling.block.row(i).squaredNorm();
+      const double c         = C(i, i);
+      const bool   rigid     = square > 0. && constraint_stiffness * std::abs(c) * site.diagonal <= square;
+      const double stiffness = own.row(i).squaredNorm();
+      if (rigid && stiffness < 1e-12 * square)
+        throw NotCondensable("a slave node is held where its contact constraint acts");
+      if (!rigid && square > 0. && c < 0.)
+        throw NotCondensable("a friction law gives way: its compliance is negative");
+      kind[i] = Kind::soft;
+      if (rigid)
+        kind[i] = Kind::constraint;
+      else if (stiffness > c * site.diagonal)
+        kind[i] = Kind::stiff;
+      site.flexibility_inverse[i] = rigid || c == 0. ? 0. : 1. / c;
+    }
+
+    unsigned int n   = 0;
+    const auto   add = [&](Eigen::Vector3d v, const double tolerance)
+    {
+      const double norm = v.norm();
+      for (unsigned int repeat = 0; repeat < 2; ++repeat)
+        for (unsigned int d = 0; d < n; ++d)
+          v -= site.basis.col(d).dot(v) * site.basis.col(d);
+      if (n == 3 || !(v.norm() > tolerance * norm))
+        return false;
+      site.basis.col(n++) = v.normalized();
+      return true;
+    };
+    for (const Kind wanted : {Kind::constraint, Kind::stiff})
+    {
+      for (unsigned int i = 0; i < 3; ++i)
+        if (kind[i] == wanted)
+        {
+          if (add(own.row(i).transpose(), 1e-6))
+            site.combination[n - 1] = i;
+          else if (wanted == Kind::constraint)
+            throw NotCondensable("the constraints of a slave node depend on each other");
+        }
+      if (wanted == Kind::constraint)
+        site.n_constraints = n;
+    }
+    site.n_directions = n;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (K.decoupled(dim * site.node + d))
+        add(Eigen::Vector3d::Unit(d), 0.999);
+    for (unsigned int d = 0; d < dim; ++d)
+      add(Eigen::Vector3d::Unit(d), 0.4);
+    for (unsigned int d = 0; d < dim && n < dim; ++d)
+      add(Eigen::Vector3d::Unit(d), 1e-3);
+  }
+
+  Condensation::Matrix3 Condensation::constraint_inverse(const Site &site, const unsigned int n) const
+  {
+    Matrix3 H = Matrix3::Identity();
+    for (unsigned int d = 0; d < n; ++d)
+      for (unsigned int e = 0; e < n; ++e)
+        H(d, e) = site.rows.front().block.row(site.combination[d]).dot(site.basis.col(e));
+    Matrix3 inverse = H.inverse();
+    for (unsigned int d = n; d < dim; ++d)
+      inverse(d, d) = 0.;
+    return inverse;
+  }
+
+  void Condensation::find_coupled_sites()
+  {
+    std::map<unsigned int, Site *> site_of; // by local node
+    for (Site &site : sites_)
+      site_of[site.node] = &site;
+    const auto n_constraints = [&](const unsigned int node)
+    {
+      const auto found = site_of.find(node);
+      return found == site_of.end() ? 0u : found->second->n_constraints;
+    };
+
+    std::vector<DoFIndex> asked;
+    for (const Site &site : sites_)
+      if (site.n_constraints > 0)
+        for (const Coupling &coupling : site.rows)
+          asked.push_back(coupling.node);
+    std::sort(asked.begin(), asked.end());
+    asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
+    const auto constraints_of =
+        ask(asked, [&](const unsigned int node) { return std::vector<double>{double(n_constraints(node))}; });
+
+    std::vector<DoFIndex> touched;
+    for (Site &site : sites_)
+      for (unsigned int k = 1; k < site.rows.size() && site.n_constraints > 0; ++k)
+        if (constraints_of.at(site.rows[k].node)[0] > 0.)
+        {
+          bool acts = false;
+          for (unsigned int d = 0; d < site.n_constraints; ++d)
+            acts = acts || !site.rows[k].block.row(site.combination[d]).isZero(0.);
+          if (acts)
+          {
+            site.coupled = true;
+            touched.push_back(site.rows[k].node);
+          }
+        }
+    ask(touched,
+        [&](const unsigned int node)
+        {
+          site_of.at(node)->coupled = true;
+          return std::vector<double>();
+        });
+    for (Site &site : sites_)
+      if (site.coupled)
+        site.n_directions = site.n_constraints;
+  }
+
+  void Condensation::make_rows()
+  {
+    for (const Site &site : sites_)
+    {
+      if (site.n_directions == 0)
+        continue;
+      auto row = std::make_unique<Row>();
+      row->own = site.basis;
+      for (unsigned int d = 0; d < site.n_constraints; ++d)
+        row->own.col(d).setZero();
+      if (!site.coupled)
+      {
+        const Matrix3 combine = site.basis * constraint_inverse(site, site.n_directions);
+        for (unsigned int k = 1; k < site.rows.size(); ++k)
+        {
+          Matrix3 rows = Matrix3::Zero();
+          for (unsigned int d = 0; d < site.n_directions; ++d)
+            rows.row(d) = site.rows[k].block.row(site.combination[d]);
+          const Matrix3 N = -combine * rows;
+          if (!N.isZero(0.))
+            row->others.push_back({site.rows[k].node, N});
+        }
+      }
+      rows_[site.node] = std::move(row);
+      for (unsigned int d = 0; d < site.n_constraints; ++d)
+        eliminated_.emplace_back(dim * site.node + d, site.diagonal);
+    }
+  }
+
+  void Condensation::make_cluster()
+  {
+    // node, number of constraints, basis, and per coupled node: node and its three columns of the constraint rows
+    std::vector<double> mine;
+    for (const Site &site : sites_)
+      if (site.coupled)
+      {
+        mine.push_back(nodes_.global(site.node));
+        mine.push_back(site.n_constraints);
+        append(mine, site.basis);
+        mine.push_back(site.rows.size());
+        for (const Coupling &coupling : site.rows)
+        {
+          mine.push_back(coupling.node);
+          Matrix3 rows = Matrix3::Zero();
+          for (unsigned int d = 0; d < site.n_constraints; ++d)
+            rows.row(d) = coupling.block.row(site.combination[d]);
+          append(mine, rows);
+        }
+      }
+    if (dealii::Utilities::MPI::max(mine.empty() ? 0 : 1, nodes_.communicator()) == 0)
+      return;
+
+    struct Member
+    {
+      DoFIndex              node;
+      unsigned int          n_constraints;
+      Matrix3               basis;
+      std::vector<Coupling> rows;
+    };
+    std::vector<Member> members;
+    cluster_ = std::make_unique<Cluster>();
+    for (const auto &part : dealii::Utilities::MPI::all_gather(nodes_.communicator(), mine))
+      for (const double *p = part.data(); p != part.data() + part.size();)
+      {
+        Member member;
+        member.node          = static_cast<DoFIndex>(*p++);
+        member.n_constraints = static_cast<unsigned int>(*p++);
+        member.basis         = read(p);
+        const auto n         = static_cast<unsigned int>(*p++);
+        for (unsigned int k = 0; k < n; ++k)
+        {
+          const auto node = static_cast<DoFIndex>(*p++);
+          member.rows.push_back({node, read(p)});
+        }
+        cluster_->first[member.node] = cluster_->size;
+        cluster_->size += member.n_constraints;
+        members.push_back(std::move(member));
+      }
+    std::map<DoFIndex, const Member *> member_of;
+    for (const Member &member : members)
+      member_of[member.node] = &member;
+
+    std::vector<Eigen::Triplet<double>> M;
+    cluster_->others.resize(cluster_->size);
+    for (const Member &member : members)
+      for (const Coupling &coupling : member.rows)
+        for (unsigned int d = 0; d < member.n_constraints; ++d)
+        {
+          const unsigned int row = cluster_->first[member.node] + d;
+          Eigen::RowVector3d b   = coupling.block.row(d);
+          if (const auto found = member_of.find(coupling.node); found != member_of.end())
+          {
+            const Member &other = *found->second;
+            b                   = (b * other.basis).eval();
+            for (unsigned int e = 0; e < other.n_constraints; ++e)
+            {
+              if (b[e] != 0.)
+                M.emplace_back(row, cluster_->first[other.node] + e, b[e]);
+              b[e] = 0.;
+            }
+          }
+          if (!b.isZero(0.))
+            cluster_->others[row].emplace_back(coupling.node, b);
+        }
+    Eigen::SparseMatrix<double> matrix(cluster_->size, cluster_->size);
+    matrix.setFromTriplets(M.begin(), M.end());
+    cluster_->M.compute(matrix);
+    const Eigen::SparseMatrix<double> transposed = matrix.transpose();
+    cluster_->M_transposed.compute(transposed);
+    if (cluster_->M.info() != Eigen::Success || cluster_->M_transposed.info() != Eigen::Success)
+      throw NotCondensable("the constraints of neighbouring slave nodes depend on each other");
+
+    // y_c = M^-1 (g - R y): rows of M^-1 for the sites owned here; they decay quickly from node to node
+    for (const Site &site : sites_)
+      if (site.coupled && rows_[site.node])
+      {
+        Row                        &row = *rows_[site.node];
+        std::map<DoFIndex, Matrix3> sum;
+        for (unsigned int d = 0; d < site.n_constraints; ++d)
+        {
+          Eigen::VectorXd unit                                = Eigen::VectorXd::Zero(cluster_->size);
+          unit[cluster_->first[nodes_.global(site.node)] + d] = 1.;
+          const Eigen::VectorXd inverse                       = cluster_->M_transposed.solve(unit);
+          const double          largest                       = inverse.cwiseAbs().maxCoeff();
+          for (unsigned int r = 0; r < cluster_->size; ++r)
+            if (std::abs(inverse[r]) > 1e-16 * largest)
+              for (const auto &[node, b] : cluster_->others[r])
+                sum.try_emplace(node, Matrix3::Zero()).first->second -= site.basis.col(d) * (inverse[r] * b);
+        }
+        for (const auto &[node, block] : sum)
+          if (node == nodes_.global(site.node))
+            row.own += block;
+          else
+            row.others.push_back({node, block});
+      }
+  }
+
+  void Condensation::solve_cluster(std::vector<Eigen::Vector3d> &values, const bool transposed) const
+  {
+    std::vector<double> all(cluster_->size, 0.);
+    for (unsigned int k = 0; k < sites_.size(); ++k)
+      for (unsigned int d = 0; d < sites_[k].n_constraints && sites_[k].coupled; ++d)
+        all[cluster_->first.at(nodes_.global(sites_[k].node)) + d] = values[k][d];
+    dealii::Utilities::MPI::sum(all, nodes_.communicator(), all);
+    const Eigen::VectorXd b = Eigen::Map<Eigen::VectorXd>(all.data(), all.size());
+    const Eigen::VectorXd x = transposed ? cluster_->M_transposed.solve(b).eval() : cluster_->M.solve(b).eval();
+    for (unsigned int k = 0; k < sites_.size(); ++k)
+      for (unsigned int d = 0; d < sites_[k].n_constraints && sites_[k].coupled; ++d)
+        values[k][d] = x[cluster_->first.at(nodes_.global(sites_[k].node)) + d];
+  }
+
+  void Condensation::fetch_ghost_rows()
+  {
+    std::vector<DoFIndex> ghosts;
+    for (unsigned int i = nodes_.n_owned(); i < nodes_.size(); ++i)
+      ghosts.push_back(nodes_.global(i));
+    const auto pack = [&](const unsigned int node)
+    {
+      std::vector<double> numbers;
+      if (const Row *row = rows_[node].get())
+      {
+        append(numbers, row->own);
+        for (const Coupling &other : row->others)
+        {
+          numbers.push_back(other.node);
+          append(numbers, other.block);
+        }
+      }
+      return numbers;
+    };
+    for (const auto &[node, numbers] : ask(ghosts, pack))
+      if (!numbers.empty())
+      {
+        auto          row = std::make_unique<Row>();
+        const double *p   = numbers.data();
+        row->own          = read(p);
+        while (p != numbers.data() + numbers.size())
+        {
+          const auto other = static_cast<DoFIndex>(*p++);
+          row->others.push_back({other, read(p)});
+        }
+        rows_[nodes_.local(node)] = std::move(row);
+      }
+  }
+
+  void Condensation::make_transformation()
+  {
+    taken_out_.assign(dim * nodes_.size(), 0);
+    std::vector<MatrixEntry> entries;
+    for (unsigned int i = 0; i < nodes_.size(); ++i)
+    {
+      const Row *row = rows_[i].get();
+      if (!row)
+        continue;
+      std::fill_n(taken_out_.begin() + dim * i, dim, 1);
+      if (i >= nodes_.n_owned())
+        continue;
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        const DoFIndex dof = dim * nodes_.global(i) + c;
+        const auto     add = [&](const DoFIndex node, const Matrix3 &block)
+        {
+          for (unsigned int d = 0; d < dim; ++d)
+            if (block(c, d) != 0.)
+              entries.push_back({dof, dim * node + d, block(c, d)});
+        };
+        add(nodes_.global(i), row->own);
+        for (const Coupling &other : row->others)
+          add(other.node, other.block);
+      }
+    }
+    T_ = make_matrix(entries, nodes_.row_map(), nodes_.row_map());
+  }
+
+  void Condensation::apply_stiffness(Epetra_MultiVector &m) const
+  {
+    for (unsigned int k = 0; k < sites_.size(); ++k)
+    {
+      Eigen::Map<Eigen::Vector3d> values(m[0] + 3 * k);
+      const Site                 &site = sites_[k];
+      values = (site.turn * site.flexibility_inverse.asDiagonal() * (site.turn.transpose() * values)).eval();
+    }
+  }
+
+  void Condensation::apply_matrix(const Epetra_MultiVector &u, Epetra_MultiVector &f) const
+  {
+    system_.apply_stiffness(u, f);
+    system_.B().Multiply(false, u, multiplier_);
+    apply_stiffness(multiplier_);
+    system_.B().Multiply(true, multiplier_, part_);
+    f.Update(1., part_, 1.);
+  }
+
+  void Condensation::apply_transformation(const Epetra_MultiVector &y, Epetra_MultiVector &u) const
+  {
+    T_->Multiply(false, y, u);
+    for (int i = 0; i < u.MyLength(); ++i)
+      if (!taken_out_[i])
+        u[0][i] = y[0][i];
+  }
+
+  void Condensation::apply_transposed(const Epetra_MultiVector &f, Epetra_MultiVector &y) const
+  {
+    T_->Multiply(true, f, y);
+    for (int i = 0; i < y.MyLength(); ++i)
+      if (!taken_out_[i])
+        y[0][i] += f[0][i];
+  }
+
+  void Condensation::vmult(Vector &y, const Vector &x) const
+  {
+    Epetra_MultiVector &result = y.trilinos_vector();
+    apply_transformation(x.trilinos_vector(), u_);
+    apply_matrix(u_, f_);
+    apply_transposed(f_, result);
+    for (const auto &[i, diagonal] : eliminated_)
+      result[0][i] = diagonal * x.trilinos_vector()[0][i];
+  }
+
+  void Condensation::condense(const BlockVector &b, Vector &rhs)
+  {
+    particular_.reinit(b.block(0));
+    std::vector<Eigen::Vector3d> y(sites_.size(), Eigen::Vector3d::Zero());
+    for (unsigned int k = 0; k < sites_.size(); ++k)
+    {
+      const Site           &site = sites_[k];
+      const Eigen::Vector3d g =
+          site.turn.transpose() * Eigen::Map<const Eigen::Vector3d>(b.block(1).trilinos_vector()[0] + 3 * k);
+      for (unsigned int d = 0; d < site.n_constraints; ++d)
+        y[k][d] = g[site.combination[d]];
+      if (!site.coupled)
+        y[k] = (constraint_inverse(site, site.n_constraints) * y[k]).eval();
+    }
+    if (cluster_)
+      solve_cluster(y, false);
+    Epetra_MultiVector &u_g = particular_.trilinos_vector();
+    for (unsigned int k = 0; k < sites_.size(); ++k)
+    {
+      const Eigen::Vector3d u = sites_[k].basis * y[k];
+      for (unsigned int c = 0; c < dim && sites_[k].n_constraints > 0; ++c)
+        u_g[0][dim * sites_[k].node + c] = u[c];
+    }
+
+    apply_matrix(u_g, f_);
+    multiplier_ = b.block(1).trilinos_vector();
+    apply_stiffness(multiplier_);
+    system_.B().Multiply(true, multiplier_, part_);
+    f_.Update(1., b.block(0).trilinos_vector(), 1., part_, -1.);
+    rhs.reinit(b.block(0));
+    apply_transposed(f_, rhs.trilinos_vector());
+    for (const auto &[i, diagonal] : eliminated_)
+      rhs.trilinos_vector()[0][i] = 0.;
+  }
+
+  void Condensation::expand(const Vector &y, const BlockVector &b, BlockVector &x) const
+  {
+    Epetra_MultiVector       &u = x.block(0).trilinos_vector(), &m = x.block(1).trilinos_vector();
+    const Epetra_MultiVector &g = b.block(1).trilinos_vector();
+    apply_transformation(y.trilinos_vector(), u);
+    u.Update(1., particular_.trilinos_vector(), 1.);
+
+    // m = D (B u - g), and what is left of equilibrium goes to the constraints
+    system_.apply_stiffness(u, f_);
+    system_.B().Multiply(false, u, m);
+    m.Update(-1., g, 1.);
+    apply_stiffness(m);
+    system_.B().Multiply(true, m, part_);
+    f_.Update(1., b.block(0).trilinos_vector(), -1., part_, -1.);
+    std::vector<Eigen::Vector3d> force(sites_.size(), Eigen::Vector3d::Zero());
+    for (unsigned int k = 0; k < sites_.size(); ++k)
+    {
+      const Site &site = sites_[k];
+      force[k]         = site.basis.transpose() * Eigen::Map<const Eigen::Vector3d>(f_[0] + dim * site.node);
+      if (!site.coupled)
+        force[k] = (constraint_inverse(site, site.n_constraints).transpose() * force[k]).eval();
+    }
+    if (cluster_)
+      solve_cluster(force, true);
+    for (unsigned int k = 0; k < sites_.size(); ++k)
+      for (unsigned int d = 0; d < sites_[k].n_constraints; ++d)
+        Eigen::Map<Eigen::Vector3d>(m[0] + 3 * k) += force[k][d] * sites_[k].turn.col(sites_[k].combination[d]);
+  }
+
+  void Condensation::transform_modes(std::vector<double> &modes) const
+  {
+    const std::size_t n = dim * nodes_.n_owned();
+    for (const Site &site : sites_)
+      if (site.n_directions > 0)
+        for (unsigned int mode = 0; mode < 6; ++mode)
+        {
+          Eigen::Map<Eigen::Vector3d> values(modes.data() + mode * n + dim * site.node);
+          values = (site.basis.transpose() * values).eval();
+          for (unsigned int d = 0; d < site.n_directions; ++d)
+            values[d] = 0.;
+        }
+  }
+
+  std::vector<char> Condensation::signature() const
+  {
+    std::vector<char> result;
+    for (const Site &site : sites_)
+      result.push_back(site.n_constraints + 4 * site.n_directions);
+    return result;
+  }
+} // namespace Nodus
