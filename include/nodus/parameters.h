@@ -149,8 +149,14 @@ namespace Nodus
 
   struct LoopParameters
   {
+    enum class Mode
+    {
+      fixed_point,
+      newton
+    };
     unsigned int maximum_passes = 10;
-    double       tolerance      = 0.; ///< relative; the status loop has none: no status may change
+    double       tolerance      = 0.;                ///< relative; the status loop has none: no status may change
+    Mode         mode           = Mode::fixed_point; ///< newton: part of each Newton iteration, no loop
   };
 
   struct NewtonParameters

@@ -95,11 +95,11 @@ namespace Nodus
     MPI_Comm       communicator;
     bool           analysed = false;
 
-    explicit Instance(const MPI_Comm communicator)
+    Instance(const MPI_Comm communicator, const bool symmetric)
         : communicator(communicator)
     {
       mumps.par          = 1; // rank 0 takes part in the factorisation
-      mumps.sym          = 2; // general symmetric
+      mumps.sym          = symmetric ? 2 : 0;
       mumps.comm_fortran = MPI_Comm_c2f(communicator);
       run(-1);
       for (unsigned int i = 1; i <= 4; ++i)
@@ -134,6 +134,7 @@ namespace Nodus
   DirectSolver::DirectSolver(const BlockLayout &layout)
       : communicator_(layout.communicator)
       , size_(0)
+      , symmetric_(true)
   {
   }
 
@@ -176,12 +177,12 @@ namespace Nodus
       bulk.ExtractMyRowView(r, n, values, indices);
       const int row = bulk.GRID(r);
       for (int k = 0; k < n; ++k)
-        if (const int column = bulk.GCID(indices[k]); row <= column)
+        if (const int column = bulk.GCID(indices[k]); row <= column || !symmetric_)
           add(row, column, values[k]);
     }
     const TripletMatrix &contact = system.contact;
     for (std::size_t k = 0; k < contact.value.size(); ++k)
-      if (contact.row[k] <= contact.column[k])
+      if (contact.row[k] <= contact.column[k] || !symmetric_)
         add(contact.row[k], contact.column[k], contact.value[k]);
 
     if (n_entries != row_.size())
@@ -199,7 +200,7 @@ namespace Nodus
   void DirectSolver::factorise(const bool pattern_changed)
   {
     if (!instance_)
-      instance_ = std::make_unique<Instance>(communicator_);
+      instance_ = std::make_unique<Instance>(communicator_, symmetric_);
     DMUMPS_STRUC_C &mumps = instance_->mumps;
 
     mumps.n       = size_;
@@ -256,7 +257,7 @@ namespace Nodus
     {
       const int i = row_[k] - 1, j = column_[k] - 1;
       r[i] -= value_[k] * x[j];
-      if (i != j)
+      if (symmetric_ && i != j)
         r[j] -= value_[k] * x[i];
     }
     dealii::Utilities::MPI::sum(r, communicator_, r);
@@ -265,13 +266,17 @@ namespace Nodus
     return r;
   }
 
-  LinearSolver::Report DirectSolver::solve(const LinearSystem &system, BlockVector &solution)
+  LinearSolver::Report DirectSolver::solve(const LinearSystem &system, BlockVector &solution, double)
   {
     const BlockLayout &layout = *system.layout;
     if (layout.size() >= static_cast<DoFIndex>(std::numeric_limits<int>::max()))
       throw SolverFailure("Direct solver: too many unknowns for MUMPS, use 'Type = block'.");
     const bool same_size = size_ == static_cast<int>(layout.size());
     size_                = layout.size();
+
+    if (symmetric_ != system.symmetric)
+      instance_.reset(); // MUMPS takes the kind of matrix once
+    symmetric_ = system.symmetric;
 
     const std::vector<double> scale   = gather_scale(system);
     const bool                changed = collect_entries(system, scale);
@@ -326,8 +331,9 @@ namespace Nodus
     }
     report.relative_residual = norm(r) / (norm_b > 0. ? norm(b) : 1.);
 
-    DMUMPS_STRUC_C &mumps  = instance_->mumps;
-    report.negative_pivots = infog(mumps, 12);
+    DMUMPS_STRUC_C &mumps = instance_->mumps;
+    if (symmetric_)
+      report.negative_pivots = infog(mumps, 12);
     std::vector<int> null_pivots(infog(mumps, 28));
     if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
       std::copy_n(mumps.pivnul_list, null_pivots.size(), null_pivots.begin());

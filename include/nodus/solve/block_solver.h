@@ -11,7 +11,11 @@ namespace Nodus
   public:
     BlockSolver(const LinearSolverParameters &parameters, const RigidBodyData &rigid_body_data);
 
-    Report solve(const LinearSystem &system, BlockVector &solution) override;
+    bool solves_unsymmetric() const override
+    {
+      return false;
+    }
+    Report solve(const LinearSystem &system, BlockVector &solution, double relative_tolerance = 0.) override;
 
   private:
     const LinearSolverParameters parameters_;

@@ -61,11 +61,15 @@ namespace Nodus
     }
   };
 
-  /// One Newton correction: (bulk + contact) delta = rhs, symmetric indefinite.
+  /// One Newton correction: (bulk + contact) delta = rhs, indefinite.
   ///
   ///     [ bulk + C_uu   B^T ] [du]   [ rhs_u ]
   ///     [ B             -C  ] [dm] = [ rhs_m ],   m = (lambda, Lambda), C >= 0 and coupled only
   ///                                               within a slave node unless the weights are `consistent`
+  ///
+  /// Symmetric at frozen geometry and threshold. Otherwise the upper coupling gets the derivative of the friction
+  /// tractions with respect to lambda, B_upper = B^T + T (T in the lambda columns), and the friction rows of C the
+  /// same; C_uu gets the variation of the normals and projections, and the lambda rows of B that of the gaps.
   ///
   /// bulk has its constraints applied: constrained rows hold a positive diagonal only and no contact coupling.
   struct LinearSystem
@@ -74,6 +78,7 @@ namespace Nodus
     SparseMatrix       bulk;
     TripletMatrix      contact;
     BlockVector        rhs;
+    bool               symmetric = true; ///< the same on every rank
     /// Per owned slave node, per multiplier: scale s > 0 for symmetric row and column equilibration
     /// (multiplier = s x scaled multiplier); friction rows carry mu lambda_s and get its inverse. Size 3 x owned slave
     /// nodes: lambda, Lambda_1, Lambda_2 of the first owned node, and so on.
