@@ -91,10 +91,10 @@ namespace Nodus
     return loop.finished(update.changes, update.changes > 0 ? site_locus(update.sites.front()) : "");
   }
 
-  Status::Update ContactProblem::Implementation::update_statuses()
+  Status::Update ContactProblem::Implementation::update_statuses(const bool closing_only)
   {
-    const Status::Update update =
-        status->update(status_input(parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state));
+    const Status::Update update = status->update(
+        status_input(parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state), closing_only);
     if (update.changes > 0)
     {
       console.remark(std::to_string(update.changes) + " statuses changed, first at " +

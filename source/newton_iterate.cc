@@ -16,6 +16,8 @@ namespace Nodus
   {
     /// Forces below this fraction of stiffness times displacement are not resolved to the tolerance of Newton (1e-8).
     constexpr double relative_force_floor = 1e-5;
+    /// Relative force residual up to which an iterate right after a prescribed motion has all its statuses tested.
+    constexpr double settled_force = 1e-3;
   } // namespace
 
   std::string coordinates(const Point &X)
@@ -111,11 +113,38 @@ namespace Nodus
 
   NewtonProblem::Norms ContactProblem::Implementation::assemble()
   {
-    const bool first = std::exchange(newton_starts, false);
-    Norms      norms = assemble_iterate(first);
-    // Statuses are first tested after a correction, unless there is nothing to correct.
-    if (first && merged.status && Newton(parameters.newton).converged(norms))
-      norms = assemble_iterate(false);
+    const bool first        = std::exchange(newton_starts, false);
+    relevant_u              = solution.block(0);
+    const auto &constraints = boundary_conditions->increment_constraints(relevant_u);
+    {
+      const auto timer = console.time("bulk assembly");
+      solid->tangent(relevant_u, time, constraints, system.bulk, system.rhs.block(0), internal, external);
+    }
+    if (merged.geometry && !first)
+      pair_surfaces();
+    gather_state();
+    if (merged.threshold)
+      follow_pressure();
+
+    const Vector bulk_rhs(system.rhs.block(0));
+    Norms        norms = assemble_contact(constraints);
+    // Newton starts with the statuses that it inherits. Where prescribed displacements have just moved the boundary and
+    // left the bulk out of balance, gaps count but pressures do not.
+    const bool moved     = std::exchange(prescribed_before, norms.prescribed) > parameters.newton.contact_tolerance;
+    const bool unsettled = !first && moved && norms.force > settled_force;
+    if (merged.status && (!first || Newton(parameters.newton).converged(norms)))
+      if (const unsigned int changes = update_statuses(unsettled).changes; changes > 0)
+      {
+        system.rhs.block(0) = bulk_rhs;
+        norms               = assemble_contact(constraints);
+        norms.changes       = changes;
+      }
+    if (merged.geometry)
+    {
+      const auto timer = console.time("contact assembly");
+      GeometryTangent(parameters.contact_pairs, *surfaces, *geometry, averaged, pairing, jump, weights, *status)
+          .add(state, residual, !linear_solver->solves_unsymmetric(), system);
+    }
     return norms;
   }
 
@@ -137,25 +166,11 @@ namespace Nodus
     gather_state();
   }
 
-  NewtonProblem::Norms ContactProblem::Implementation::assemble_iterate(const bool first)
+  NewtonProblem::Norms
+  ContactProblem::Implementation::assemble_contact(const dealii::AffineConstraints<double> &constraints)
   {
-    relevant_u              = solution.block(0);
-    const auto &constraints = boundary_conditions->increment_constraints(relevant_u);
-    {
-      const auto timer = console.time("bulk assembly");
-      solid->tangent(relevant_u, time, constraints, system.bulk, system.rhs.block(0), internal, external);
-    }
-
-    Norms norms;
-    if (merged.geometry && !first)
-      pair_surfaces();
-    gather_state();
-    if (merged.threshold)
-      follow_pressure();
-    if (merged.status && !first)
-      norms.changes = update_statuses().changes;
-
     const auto timer = console.time("contact assembly");
+    Norms      norms;
     Vector     prescribed(surfaces->layout().owned[0], communicator);
     for (const auto i : surfaces->layout().owned[0])
       if (constraints.is_constrained(i))
@@ -163,10 +178,7 @@ namespace Nodus
     prescribed.compress(dealii::VectorOperation::insert);
     surfaces->gather(prescribed, state.prescribed);
 
-    residual = contact->assemble(state, system, merged.threshold && linear_solver->solves_unsymmetric());
-    if (merged.geometry)
-      GeometryTangent(parameters.contact_pairs, *surfaces, *geometry, averaged, pairing, jump, weights, *status)
-          .add(state, residual, !linear_solver->solves_unsymmetric(), system);
+    residual      = contact->assemble(state, system, merged.threshold && linear_solver->solves_unsymmetric());
     contact_force = 0.;
     contact->add_forces(residual, contact_force);
 

@@ -43,14 +43,14 @@ namespace Nodus
     bool           geometry_converged(FixedPointLoop &loop);
     bool           threshold_converged(FixedPointLoop &loop);
     bool           statuses_converged(FixedPointLoop &loop);
-    Status::Update update_statuses();
+    Status::Update update_statuses(bool closing_only = false);
 
     // Newton's view of it.
     Norms        assemble() override;
     unsigned int solve(BlockVector &correction, double relative_tolerance) override;
     void         advance(double factor, const BlockVector &correction) override;
 
-    Norms       assemble_iterate(bool first);
+    Norms       assemble_contact(const dealii::AffineConstraints<double> &constraints);
     void        follow_pressure();
     void        gather_state();
     std::string site_locus(unsigned int site) const;
@@ -100,7 +100,8 @@ namespace Nodus
         u_before_geometry;             ///< surface nodes: step start, this and the previous pairing
     std::vector<unsigned int> cycling; ///< some of the nodes of the last status cycle
     bool                      paired_before = false, newton_starts = true;
-    MergedLoops               merged; ///< in this attempt at the increment
+    double                    prescribed_before = 0.; ///< still to be met at the last assembly, relative
+    MergedLoops               merged;                 ///< in this attempt at the increment
 
     double          time = 0.;
     IterationCounts pass, counts; ///< where the loops stand, and totals of the increment

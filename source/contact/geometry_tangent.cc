@@ -2,6 +2,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
+
 namespace Nodus
 {
   namespace
@@ -120,27 +122,128 @@ namespace Nodus
     return derivative;
   }
 
+  void GeometryTangent::Blocks::clear()
+  {
+    nodes.clear();
+    slaves.clear();
+    edges.clear();
+    force.assign(force.size(), Matrix3());
+    gap.clear();
+  }
+
+  unsigned int GeometryTangent::Blocks::node(const unsigned int n)
+  {
+    const unsigned int i = std::find(nodes.begin(), nodes.end(), n) - nodes.begin();
+    if (i < nodes.size())
+      return i;
+    nodes.push_back(n);
+    if (nodes.size() > stride)
+    {
+      const unsigned int   before = stride;
+      std::vector<Matrix3> old_force(std::move(force));
+      std::vector<Vector3> old_gap(std::move(gap));
+      stride = std::max(32u, 2 * stride);
+      force.assign(stride * stride, Matrix3());
+      gap.assign(slaves.size() * stride, Vector3());
+      for (unsigned int row = 0; row < before; ++row)
+        std::copy_n(old_force.begin() + row * before, before, force.begin() + row * stride);
+      for (unsigned int row = 0; row < slaves.size(); ++row)
+        std::copy_n(old_gap.begin() + row * before, before, gap.begin() + row * stride);
+    }
+    return i;
+  }
+
+  unsigned int GeometryTangent::Blocks::slave(const unsigned int k)
+  {
+    const unsigned int i = std::find(slaves.begin(), slaves.end(), k) - slaves.begin();
+    if (i == slaves.size())
+    {
+      slaves.push_back(k);
+      gap.resize(slaves.size() * stride);
+    }
+    return i;
+  }
+
   void GeometryTangent::add_point(const ProjectedPoint &point, const ContactResidual &residual, Blocks &blocks) const
   {
     Vector3 force;
     for (const auto &[site, weight] : point.sites)
       force += weight * residual.jump[site];
+    unsigned int column[2 * 9];
+    for (unsigned int e = 0; e < point.motion.size(); ++e)
+      column[e] = blocks.node(point.motion[e].node);
     for (unsigned int alpha = 0; alpha < 2; ++alpha)
     {
       if (point.dual[alpha] == Vector3())
         continue;
       const Matrix3 slide = dealii::outer_product(force, point.dual[alpha]);
       for (const Entry &row : point.shape[alpha])
-        for (const Entry &column : point.motion)
-          blocks.force[{row.node, column.node}] -= row.weight * column.weight * slide;
+      {
+        const unsigned int first = blocks.node(row.node) * blocks.stride;
+        for (unsigned int e = 0; e < point.motion.size(); ++e)
+          blocks.force[first + column[e]] -= row.weight * point.motion[e].weight * slide;
+      }
       for (const auto &[site, weight] : point.sites)
         for (const auto &[k, coefficient] : gap_rows_[site])
         {
-          const double slope = -coefficient * weight * (pairing_[site].normal * point.tangent[alpha]);
-          for (const Entry &column : point.motion)
-            blocks.gap[{k, column.node}] += slope * column.weight * point.dual[alpha];
+          const unsigned int first = blocks.slave(k) * blocks.stride;
+          const double       slope = -coefficient * weight * (pairing_[site].normal * point.tangent[alpha]);
+          for (unsigned int e = 0; e < point.motion.size(); ++e)
+            blocks.gap[first + column[e]] += slope * point.motion[e].weight * point.dual[alpha];
         }
     }
+  }
+
+  void GeometryTangent::add_offset(const unsigned int    side,
+                                   const unsigned int    face,
+                                   const double          xi,
+                                   const double          eta,
+                                   const ProjectedPoint &point,
+                                   Blocks               &blocks) const
+  {
+    const unsigned int pair = surfaces_.pair(point.sites[0].first);
+    if (!(side == 0 ? geometry_.slave : geometry_.master)[pair].smoothed())
+      return;
+    std::array<double, 4> value;
+    for (unsigned int edge = 0; edge < 4; ++edge)
+      value[edge] = (side == 0 ? 1. : -1.) * SurfaceGeometry::edge_function(edge, xi, eta);
+    for (const auto &[site, weight] : point.sites)
+      for (const auto &[k, coefficient] : gap_rows_[site])
+      {
+        auto at = std::find_if(blocks.edges.begin(),
+                               blocks.edges.end(),
+                               [&, slave = k](const auto &e)
+                               { return e.slave == slave && e.side == side && e.face == face; });
+        if (at == blocks.edges.end())
+          at = blocks.edges.insert(at, {k, side, face, {}});
+        for (unsigned int edge = 0; edge < 4; ++edge)
+          at->normal[edge] += coefficient * weight * value[edge] * pairing_[site].normal;
+      }
+  }
+
+  void GeometryTangent::finish_offsets(const unsigned int pair, Blocks &blocks) const
+  {
+    for (unsigned int i = 0; i < blocks.edges.size(); ++i)
+    {
+      const unsigned int side = blocks.edges[i].side, face = blocks.edges[i].face;
+      const auto         same = [&](const unsigned int j)
+      { return blocks.edges[j].side == side && blocks.edges[j].face == face; };
+      bool done = false;
+      for (unsigned int j = 0; j < i; ++j)
+        done = done || same(j);
+      for (unsigned int edge = 0; edge < 4 && !done; ++edge)
+      {
+        const auto derivative = (side == 0 ? geometry_.slave : geometry_.master)[pair].edge_derivative(face, edge);
+        for (unsigned int j = i; j < blocks.edges.size(); ++j)
+          if (same(j))
+            for (const NodeDerivative &d : derivative)
+            {
+              const unsigned int column = blocks.node(d.node), row = blocks.slave(blocks.edges[j].slave);
+              blocks.gap[row * blocks.stride + column] += blocks.edges[j].normal[edge] * d.value;
+            }
+      }
+    }
+    blocks.edges.clear();
   }
 
   void GeometryTangent::add(const ContactState    &state,
@@ -151,9 +254,10 @@ namespace Nodus
     const unsigned int rank   = dealii::Utilities::MPI::this_mpi_process(surfaces_.layout().communicator);
     const auto         active = [&](const unsigned int site) { return residual.jump[site].norm_square() > 0.; };
 
+    Blocks blocks;
     for (const AveragedJump::Face &face : averaged_.faces())
     {
-      Blocks             blocks;
+      blocks.clear();
       const auto        &nodes = surfaces_.slave_faces(face.pair)[face.face].nodes;
       const unsigned int n     = nodes.size();
       for (unsigned int q = 0; q < face.points.size(); ++q)
@@ -171,7 +275,13 @@ namespace Nodus
                   point.motion);
         project(face.pair, p.master, point);
         add_point(point, residual, blocks);
+        if (!symmetric)
+        {
+          add_offset(0, face.face, p.xi, p.eta, point, blocks);
+          add_offset(1, p.master.face, p.master.xi, p.master.eta, point, blocks);
+        }
       }
+      finish_offsets(face.pair, blocks);
       write(state, blocks, symmetric, system);
     }
 
@@ -179,7 +289,7 @@ namespace Nodus
     {
       if (surfaces_.site_owner(s) != rank || !active(s) || !pairing_[s].master.found())
         continue;
-      Blocks             blocks;
+      blocks.clear();
       const unsigned int p = surfaces_.pair(s);
       if (pairs_[p].scheme != ContactPairParameters::Scheme::averaged)
       {
@@ -187,6 +297,14 @@ namespace Nodus
         project(p, pairing_[s].master, point);
         point.sites.emplace_back(s, 1.);
         add_point(point, residual, blocks);
+        const Projection &master = pairing_[s].master;
+        if (!symmetric)
+        {
+          if (surfaces_.is_point(s))
+            add_offset(0, surfaces_.point(s).face, surfaces_.point(s).xi, surfaces_.point(s).eta, point, blocks);
+          add_offset(1, master.face, master.xi, master.eta, point, blocks);
+          finish_offsets(p, blocks);
+        }
       }
       // r turns with the normal: delta r = (r.n) delta n - n (r_tau . delta n)
       const Vector3 n = pairing_[s].normal, r = residual.jump[s], jump = jump_.jump(s, state.x);
@@ -195,11 +313,18 @@ namespace Nodus
         turn[c][c] += r * n;
       for (const NodeDerivative &d : normal_derivative(s))
       {
-        const Matrix3 value = turn * d.value;
+        const Matrix3      value  = turn * d.value;
+        const unsigned int column = blocks.node(d.node);
         for (const Entry *e = jump_.begin(s); e != jump_.end(s); ++e)
-          blocks.force[{e->node, d.node}] += e->weight * value;
+        {
+          const unsigned int row = blocks.node(e->node);
+          blocks.force[row * blocks.stride + column] += e->weight * value;
+        }
         for (const auto &[k, coefficient] : gap_rows_[s])
-          blocks.gap[{k, d.node}] += coefficient * (jump * d.value);
+        {
+          const unsigned int row = blocks.slave(k);
+          blocks.gap[row * blocks.stride + column] += coefficient * (jump * d.value);
+        }
       }
       write(state, blocks, symmetric, system);
     }
@@ -229,21 +354,36 @@ namespace Nodus
       else
         system.contact.add(row, nodes[column_node].dofs[column_component], value);
     };
-    for (const auto &[at, value] : blocks.force)
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-        {
-          add(at.first, i, at.second, j, symmetric ? 0.5 * value[i][j] : value[i][j]);
-          if (symmetric)
-            add(at.second, j, at.first, i, 0.5 * value[i][j]);
-        }
+    const unsigned int n = blocks.nodes.size();
+    for (unsigned int r = 0; r < n; ++r)
+      for (unsigned int c = 0; c < n; ++c)
+      {
+        const Matrix3 &value = blocks.force[r * blocks.stride + c];
+        if (value == Matrix3())
+          continue;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+          {
+            add(blocks.nodes[r], i, blocks.nodes[c], j, symmetric ? 0.5 * value[i][j] : value[i][j]);
+            if (symmetric)
+              add(blocks.nodes[c], j, blocks.nodes[r], i, 0.5 * value[i][j]);
+          }
+      }
     if (symmetric)
       return;
-    for (const auto &[at, value] : blocks.gap)
-      for (unsigned int j = 0; j < dim; ++j)
-        if (surfaces_.fixed(at.second, j))
-          system.rhs.block(1)(at.first) -= value[j] * state.prescribed[at.second][j];
-        else
-          system.contact.add(layout.lambda(at.first), nodes[at.second].dofs[j], value[j]);
+    for (unsigned int r = 0; r < blocks.slaves.size(); ++r)
+      for (unsigned int c = 0; c < n; ++c)
+      {
+        const Vector3     &value = blocks.gap[r * blocks.stride + c];
+        const unsigned int node  = blocks.nodes[c];
+        for (unsigned int j = 0; j < dim; ++j)
+          if (value[j] != 0.)
+          {
+            if (surfaces_.fixed(node, j))
+              system.rhs.block(1)(blocks.slaves[r]) -= value[j] * state.prescribed[node][j];
+            else
+              system.contact.add(layout.lambda(blocks.slaves[r]), nodes[node].dofs[j], value[j]);
+          }
+      }
   }
 } // namespace Nodus

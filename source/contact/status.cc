@@ -84,6 +84,7 @@ namespace Nodus
 
   void Status::freeze_threshold(const std::vector<double> &site_pressure)
   {
+    note_friction();
     for (unsigned int k = 0; k < site_pressure.size(); ++k)
       now_.threshold[k] = pairs_[surfaces_.pair(k)].friction_coefficient * std::min(site_pressure[k], 0.);
     update_floor();
@@ -118,7 +119,7 @@ namespace Nodus
       had_friction_[k] = friction(k);
   }
 
-  Status::Update Status::update(const StatusInput &input)
+  Status::Update Status::update(const StatusInput &input, const bool closing_only)
   {
     const auto code = [&]()
     {
@@ -157,7 +158,7 @@ namespace Nodus
         else if (!now_.stick[k] && norm < 1. - noise)
           found = Contradiction::against_slip;
       }
-      if (found == Contradiction::none)
+      if (found == Contradiction::none || (closing_only && found != Contradiction::penetration))
         continue;
 
       now_.contact[k] = found != Contradiction::tension;
@@ -171,7 +172,7 @@ namespace Nodus
       if (one_at_a_time_)
         break;
     }
-    note_friction();
+    note_friction(); // of the next system
     result.changes = result.sites.size();
     if (result.changes == 0)
       return result;

@@ -12,6 +12,9 @@ namespace Nodus
     /// Least length of an averaged normal in the plane of symmetry of its node, before it is made a unit vector.
     constexpr double in_plane = 0.5;
 
+    /// Corners of the edges of a face, and their middles as nodes of the quadratic face.
+    constexpr unsigned int edges[4][3] = {{0, 1, 1}, {0, 2, 3}, {1, 3, 5}, {2, 3, 7}};
+
     /// [v] with [v] w = v x w.
     dealii::Tensor<2, dim> cross_matrix(const Vector3 &v)
     {
@@ -221,13 +224,46 @@ namespace Nodus
       // corner n of the face is node 2 (n % 2) + 6 (n / 2) of the quadratic one
       for (unsigned int n = 0; n < 4; ++n)
         x[2 * (n % 2) + 6 * (n / 2)] = corner(n);
-      const unsigned int edges[4][3] = {{0, 1, 1}, {0, 2, 3}, {1, 3, 5}, {2, 3, 7}};
       for (const auto &[a, b, m] : edges)
         x[m] = middle(corner(a), corner(b), nodal_normal(f, a), nodal_normal(f, b));
       // eight-node face
       x[4] = Point(0.5 * (Vector3(x[1]) + Vector3(x[3]) + Vector3(x[5]) + Vector3(x[7])) -
                    0.25 * (Vector3(x[0]) + Vector3(x[2]) + Vector3(x[6]) + Vector3(x[8])));
     }
+  }
+
+  double SurfaceGeometry::edge_function(const unsigned int edge, const double xi, const double eta)
+  {
+    const FaceShape shape(2, xi, eta); // the centre takes half of each middle
+    return shape.value[edges[edge][2]] + 0.5 * shape.value[4];
+  }
+
+  std::vector<NodeDerivative> SurfaceGeometry::edge_derivative(const unsigned int f, const unsigned int edge) const
+  {
+    const unsigned int a = edges[edge][0], b = edges[edge][1];
+    const Vector3      chord = positions_[faces_[f].nodes[b]] - positions_[faces_[f].nodes[a]];
+    const Vector3     &n_a = nodal_normal(f, a), &n_b = nodal_normal(f, b);
+    const Vector3      sum = n_a + n_b, m = sum / sum.norm(), bend = n_b - n_a;
+    const double       length = chord.norm(), sine = std::clamp(0.5 * (chord * bend) / length, -0.7, 0.7);
+    const double       angle = std::asin(sine), half_tangent = std::tan(0.5 * angle);
+    // sagitta = length/2 tan(angle/2), sin(angle) = q/length, q = chord . bend / 2
+    const double sagitta   = 0.5 * length * half_tangent;
+    const double to_q      = 0.25 * (1. + half_tangent * half_tangent) / std::cos(angle);
+    const double to_length = 0.5 * half_tangent - to_q * sine;
+
+    std::vector<NodeDerivative> derivative, nodal;
+    const Vector3               to_chord = 0.5 * to_q * bend + to_length / length * chord;
+    add(derivative, faces_[f].nodes[b], dealii::outer_product(m, to_chord));
+    add(derivative, faces_[f].nodes[a], -dealii::outer_product(m, to_chord));
+    const auto turn = sagitta * unit_derivative(sum), bending = 0.5 * to_q * dealii::outer_product(m, chord);
+    nodal_normal_derivative(f, a, nodal);
+    for (const NodeDerivative &d : nodal)
+      add(derivative, d.node, (turn - bending) * d.value);
+    nodal.clear();
+    nodal_normal_derivative(f, b, nodal);
+    for (const NodeDerivative &d : nodal)
+      add(derivative, d.node, (turn + bending) * d.value);
+    return derivative;
   }
 
   Vector3 SurfaceGeometry::normal(const unsigned int f, const double xi, const double eta) const

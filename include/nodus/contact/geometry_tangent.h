@@ -3,7 +3,7 @@
 
 #include <nodus/contact/contact_assembler.h>
 
-#include <map>
+#include <array>
 #include <vector>
 
 namespace Nodus
@@ -14,10 +14,10 @@ namespace Nodus
   /// - contact forces: G^T delta r, where r (work conjugate to the jump) turns with n, and delta G^T r, where the
   ///   projections slide, delta xi^alpha = x^alpha . delta(x_slave - x_master): exact where the surfaces touch;
   /// - gaps: delta n . [[x]] - sum_q c_q n . x_,alpha delta xi^alpha (zero where n is the normal of the surface
-  /// itself).
+  ///   itself), and the change of the offsets of smoothed surfaces.
   ///
   /// Left out: the variation of areas and of the weights c_q (nodal forces do not depend on the areas, see
-  /// pair_surfaces), of slips, of smoothed shapes at fixed nodes, and the spin of the tangents about n.
+  /// pair_surfaces), of slips and of normals averaged on the slave side, and the spin of the tangents about n.
   class GeometryTangent
   {
   public:
@@ -51,12 +51,30 @@ namespace Nodus
     void                        project(unsigned int pair, const Projection &master, ProjectedPoint &point) const;
     std::vector<NodeDerivative> normal_derivative(unsigned int site) const;
 
-    /// Blocks (row node, column node) of the force terms, and gap rows (slave, column node).
+    /// Couplings of a few nodes, dense: blocks (row node, column node) of the force terms, gap rows (slave, column
+    /// node).
     struct Blocks
     {
-      std::map<std::pair<unsigned int, unsigned int>, Matrix3> force;
-      std::map<std::pair<unsigned int, unsigned int>, Vector3> gap;
+      std::vector<unsigned int> nodes, slaves;
+      unsigned int              stride = 0;
+      std::vector<Matrix3>      force; ///< row * stride + column
+      std::vector<Vector3>      gap;   ///< slave * stride + column
+      /// What the middles of the four edges of a face add to the gap row of a slave: side 0 slave or 1 master.
+      struct Edges
+      {
+        unsigned int           slave, side, face;
+        std::array<Vector3, 4> normal;
+      };
+      std::vector<Edges> edges;
+
+      void         clear();
+      unsigned int node(unsigned int n);
+      unsigned int slave(unsigned int k);
     };
+    /// The offset at (xi, eta) of a face of a side is part of the jump at @p point.
+    void add_offset(
+        unsigned int side, unsigned int face, double xi, double eta, const ProjectedPoint &point, Blocks &blocks) const;
+    void finish_offsets(unsigned int pair, Blocks &blocks) const;
     void add_point(const ProjectedPoint &point, const ContactResidual &residual, Blocks &blocks) const;
     void write(const ContactState &state, const Blocks &blocks, bool symmetric, LinearSystem &system) const;
 

@@ -130,7 +130,8 @@ namespace Nodus
     /// a status vector comes back, only the contradicting site of lowest number changes in a pass: Murty's least-index
     /// rule, which is finite for frictionless contact at frozen geometry where changing all at once may cycle. A merged
     /// loop has no such rule and cycles when vectors come back time and again.
-    Update update(const StatusInput &input);
+    /// @p closing_only: sites that penetrate close, nothing else changes (an iterate whose pressures mean nothing yet).
+    Update update(const StatusInput &input, bool closing_only = false);
 
     /// Empties the ledger, at the start of an increment.
     void                begin_increment();

@@ -71,6 +71,15 @@ namespace Nodus
       return nodal_normals_[f * faces_[f].nodes.size() + n];
     }
 
+    bool smoothed() const
+    {
+      return shape_degree_ != degree_;
+    }
+    /// The offset is the sum over the four edges of a function of (xi, eta) times the offset of the edge's middle, and
+    /// its derivative with respect to the nodes likewise.
+    static double               edge_function(unsigned int edge, double xi, double eta);
+    std::vector<NodeDerivative> edge_derivative(unsigned int f, unsigned int edge) const;
+
     /// Add to @p derivative that of the normals with respect to the nodes, at fixed local coordinates. That of the face
     /// normal leaves the smoothing out.
     void normal_derivative(unsigned int f, double xi, double eta, std::vector<NodeDerivative> &derivative) const;
