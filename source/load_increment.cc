@@ -1,11 +1,7 @@
 #include <nodus/contact/site_values.h>
 #include <nodus/contact_problem_implementation.h>
 
-#include <deal.II/base/mpi.h>
-#include <deal.II/dofs/dof_tools.h>
-
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 
 namespace Nodus
@@ -20,24 +16,39 @@ namespace Nodus
       return largest;
     }
 
-    /// Forces below this fraction of stiffness times displacement are not resolved to the tolerance of Newton (1e-8).
-    constexpr double relative_force_floor = 1e-5;
+    /// Newton iterations without progress after which a merged iteration is given up.
+    constexpr unsigned int patience = 8;
   } // namespace
 
-  std::string coordinates(const Point &X)
-  {
-    std::ostringstream text;
-    text << "(" << X << ")";
-    return text.str();
-  }
-
-  /// The three nested fixed-point loops around Newton (theory section 6).
+  /// The loops as the parameters ask for them; where a merged iteration fails, once more with all three as loops.
   void ContactProblem::Implementation::solve_increment()
   {
     counts = IterationCounts();
+    merged = {parameters.geometry_loop.mode == LoopParameters::Mode::newton,
+              parameters.threshold_loop.mode == LoopParameters::Mode::newton && status->has_friction(),
+              parameters.status_loop.mode == LoopParameters::Mode::newton};
+    if (merged.any())
+      try
+      {
+        solve_loops();
+        return;
+      }
+      catch (const SolverFailure &failure)
+      {
+        console.remark(std::string("merged iteration given up: ") + failure.what() + "; again with three loops");
+        roll_back();
+        merged = MergedLoops();
+        ++counts.fallbacks;
+      }
+    solve_loops();
+  }
+
+  /// Three nested loops around Newton (theory section 6); those merged into Newton are passed through once.
+  void ContactProblem::Implementation::solve_loops()
+  {
     status->begin_increment();
     surfaces->gather(committed.block(0), u_start);
-    const Newton newton(parameters.newton);
+    const Newton newton(parameters.newton, merged.any() ? patience : 0);
 
     FixedPointLoop geometry("geometry", parameters.geometry_loop);
     do
@@ -47,8 +58,9 @@ namespace Nodus
       FixedPointLoop threshold("threshold", parameters.threshold_loop);
       do
       {
-        status->freeze_threshold(site_pressure(weights, *status, state.lambda));
-        status->begin_loop();
+        if (!merged.threshold)
+          status->freeze_threshold(site_pressure(weights, *status, state.lambda));
+        status->begin_loop(merged.status);
 
         FixedPointLoop statuses("status", parameters.status_loop);
         do
@@ -56,72 +68,33 @@ namespace Nodus
           pass.geometry  = geometry.counter() + 1;
           pass.threshold = threshold.counter() + 1;
           pass.status    = statuses.counter() + 1;
-          const auto report =
-              newton.solve(*this,
-                           [&](const unsigned int iteration, const Norms &norms, const unsigned int krylov)
-                           { console.newton_iteration(pass, iteration, norms, krylov); });
-          counts.newton += report.iterations;
-          counts.krylov += report.krylov_iterations;
+          newton_starts  = true;
+
+          newton.solve(*this,
+                       [&](const unsigned int iteration, const Norms &norms, const unsigned int krylov)
+                       {
+                         console.newton_iteration(pass, iteration, norms, krylov);
+                         counts.newton += iteration > 0;
+                         counts.krylov += krylov;
+                       });
         } while (!statuses_converged(statuses));
       } while (!threshold_converged(threshold));
     } while (!geometry_converged(geometry));
   }
 
-  /// Freezes the geometry: projections, frames, jump operator and surface weights at the current positions.
-  void ContactProblem::Implementation::pair_surfaces()
-  {
-    const auto    timer  = console.time("pairing");
-    const Pairing before = pairing;
-    gather_state();
-    u_before_geometry = u_geometry;
-    surfaces->gather(solution.block(0), u_geometry);
-
-    const auto              &pairs = parameters.contact_pairs;
-    const std::vector<Point> X     = surfaces->positions(std::vector<Vector3>(surfaces->nodes().size()));
-    const ContactGeometry    geometry(pairs, *surfaces, state.x);
-    AveragedJump             averaged;
-    averaged.compute(pairs, *surfaces, geometry, state.x, X);
-    pairing.project(pairs, *surfaces, geometry, averaged);
-    jump.build(pairs, *surfaces, geometry, pairing, averaged);
-    weights.compute(pairs, *surfaces, averaged, state.x, X);
-
-    if (!paired_before)
-    {
-      std::vector<double> distance;
-      for (unsigned int k = 0; k < pairing.size(); ++k)
-        distance.push_back(contact->distance(state, k));
-      status->initialize(pairing, distance);
-      paired_before = true;
-      return;
-    }
-    status->inherit(pairing);
-
-    // Lambda keeps its direction in space and its length in the new tangent planes; nodes without partner lose all.
-    const auto owned = surfaces->owned_slave_nodes();
-    for (unsigned int k = owned.first; k < owned.second; ++k)
-    {
-      Vector3 Lambda;
-      for (unsigned int i = 0; i < 2; ++i)
-        Lambda += state.Lambda[k][i] * before[k].tangent[i];
-      double component[2] = {0., 0.};
-      for (unsigned int i = 0; i < 2; ++i)
-        if (pairing[k].found && pairing[k].tangent_free[i])
-          component[i] = Lambda * pairing[k].tangent[i];
-      const double norm = std::hypot(component[0], component[1]);
-      for (unsigned int i = 0; i < 2; ++i)
-        solution.block(2)(2 * k + i) = norm > 0. ? component[i] * Lambda.norm() / norm : 0.;
-      solution.block(1)(k) = pairing[k].found ? state.lambda[k] : 0.;
-    }
-    solution.block(1).compress(dealii::VectorOperation::insert);
-    solution.block(2).compress(dealii::VectorOperation::insert);
-    gather_state();
-  }
-
   bool ContactProblem::Implementation::statuses_converged(FixedPointLoop &loop)
   {
-    const Status::Update update =
-        status->update(status_input(parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state));
     ++counts.status;
+    if (merged.status)
+      return true;
+    const Status::Update update = update_statuses();
+    return loop.finished(update.changes, update.changes > 0 ? site_locus(update.sites.front()) : "");
+  }
+
+  Status::Update ContactProblem::Implementation::update_statuses(const bool closing_only)
+  {
+    const Status::Update update = status->update(
+        status_input(parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state), closing_only);
     if (update.changes > 0)
     {
       console.remark(std::to_string(update.changes) + " statuses changed, first at " +
@@ -132,21 +105,24 @@ namespace Nodus
         for (const unsigned int k : cycling)
           nodes += (nodes.empty() ? "" : "; ") + site_locus(k);
         throw SolverFailure(
-            "the status loop cycles, also with one change at a time; the nodes that change back and forth: " + nodes);
+            (merged.status ? "the statuses cycle" : "the status loop cycles, also with one change at a time") +
+            std::string("; the nodes that change back and forth: ") + nodes);
       }
       if (update.period > 0)
       {
         cycling.assign(update.sites.begin(), update.sites.begin() + std::min<std::size_t>(3, update.sites.size()));
         console.remark("these statuses were met " + std::to_string(update.period) +
-                       " passes ago: from here one node changes at a time");
+                       (merged.status ? " iterations ago" : " passes ago: from here one node changes at a time"));
       }
     }
-    return loop.finished(update.changes, update.changes > 0 ? site_locus(update.sites.front()) : "");
+    return update;
   }
 
   bool ContactProblem::Implementation::threshold_converged(FixedPointLoop &loop)
   {
     ++counts.threshold;
+    if (merged.threshold)
+      return true;
     if (!status->has_friction())
       return loop.finished(0., "");
     const Status::Change change = status->threshold_change(site_pressure(weights, *status, state.lambda));
@@ -159,6 +135,8 @@ namespace Nodus
   bool ContactProblem::Implementation::geometry_converged(FixedPointLoop &loop)
   {
     ++counts.geometry;
+    if (merged.geometry)
+      return true;
     std::vector<Vector3> u;
     surfaces->gather(solution.block(0), u);
     const double change = largest_entry(u, u_geometry);
@@ -184,149 +162,23 @@ namespace Nodus
     return loop.finished(value, u.empty() ? "" : coordinates(surfaces->nodes()[worst].X));
   }
 
-  void ContactProblem::Implementation::gather_state()
-  {
-    std::vector<Vector3> u;
-    surfaces->gather(solution.block(0), u);
-    state.x = surfaces->positions(u);
-    state.increment.resize(u.size());
-    state.prescribed.resize(u.size());
-    for (unsigned int i = 0; i < u.size(); ++i)
-      state.increment[i] = u[i] - u_start[i];
-
-    // Multipliers live with their owners; the nodal arrays are replicated.
-    const unsigned int  n     = surfaces->slave_nodes().size();
-    const auto          owned = surfaces->owned_slave_nodes();
-    std::vector<double> all(3 * n, 0.);
-    for (unsigned int k = owned.first; k < owned.second; ++k)
-    {
-      all[3 * k]     = solution.block(1)(k);
-      all[3 * k + 1] = solution.block(2)(2 * k);
-      all[3 * k + 2] = solution.block(2)(2 * k + 1);
-    }
-    dealii::Utilities::MPI::sum(all, communicator, all);
-    state.lambda.resize(n);
-    state.Lambda.resize(n);
-    for (unsigned int k = 0; k < n; ++k)
-    {
-      state.lambda[k] = all[3 * k];
-      state.Lambda[k] = {{all[3 * k + 1], all[3 * k + 2]}};
-    }
-  }
-
-  NewtonProblem::Norms ContactProblem::Implementation::assemble()
-  {
-    relevant_u              = solution.block(0);
-    const auto &constraints = boundary_conditions->increment_constraints(relevant_u);
-    {
-      const auto timer = console.time("bulk assembly");
-      solid->tangent(relevant_u, time, constraints, system.bulk, system.rhs.block(0), internal, external);
-    }
-
-    const auto timer = console.time("contact assembly");
-    gather_state();
-    Norms  norms;
-    Vector prescribed(surfaces->layout().owned[0], communicator);
-    for (const auto i : surfaces->layout().owned[0])
-      if (constraints.is_constrained(i))
-        prescribed(i) = constraints.get_inhomogeneity(i);
-    prescribed.compress(dealii::VectorOperation::insert);
-    surfaces->gather(prescribed, state.prescribed);
-
-    residual      = contact->assemble(state, system);
-    contact_force = 0.;
-    contact->add_forces(residual, contact_force);
-
-    Vector moved(solution.block(0));
-    moved -= committed.block(0);
-    const double length = std::max(moved.linfty_norm(), length_scale);
-    if (stiffness_scale == 0.)
-    {
-      stiffness_scale = system.bulk.largest_diagonal();
-    }
-    // The last term is round-off: without it a body that only translates would be measured against its own noise.
-    const double scale = std::max({internal.linfty_norm(),
-                                   external.linfty_norm(),
-                                   contact_force.linfty_norm(),
-                                   relative_force_floor * stiffness_scale * length});
-    double       force = 0.;
-    for (const auto i : surfaces->layout().owned[0])
-      if (!constraints.is_constrained(i))
-        force = std::max(force, std::abs(internal(i) - external(i) + contact_force(i)));
-    force            = dealii::Utilities::MPI::max(force, communicator);
-    norms.force      = scale > 0. ? force / scale : 0.;
-    norms.contact    = contact->norm(residual, length);
-    norms.prescribed = prescribed.linfty_norm() / length;
-    return norms;
-  }
-
-  unsigned int ContactProblem::Implementation::solve(BlockVector &correction)
-  {
-    const auto                 timer  = console.time("linear solver");
-    const LinearSolver::Report report = linear_solver->solve(system, correction);
-    if (!report.null_pivots.empty())
-      throw SolverFailure("the system is singular (" + std::to_string(report.null_pivots.size()) +
-                          " null pivots), first at " + unknown_locus(report.null_pivots.front()));
-    const long surplus = report.negative_pivots - 3 * static_cast<long>(surfaces->layout().n_slave_nodes);
-    if (report.negative_pivots >= 0 && surplus != 0)
-      console.remark("the tangent has " + std::to_string(std::abs(surplus)) + " negative eigenvalues " +
-                     (surplus > 0 ? "more" : "less") + " than multipliers: the state is not stable");
-    // The solver leaves prescribed components alone: they take what the constraints still ask for.
-    boundary_conditions->increment_constraints(relevant_u).distribute(correction.block(0));
-    return report.iterations;
-  }
-
-  void ContactProblem::Implementation::advance(const double factor, const BlockVector &correction)
-  {
-    solution.add(factor, correction);
-  }
-
-  std::string ContactProblem::Implementation::site_locus(const unsigned int site) const
-  {
-    if (site >= surfaces->n_sites())
-      return "";
-    const unsigned int p    = surfaces->pair(site);
-    const auto        &name = parameters.contact_pairs[p].name;
-    return (surfaces->is_point(site) ? "integration point " : "slave node ") +
-           coordinates(surfaces->site_position(site)) + " of contact pair " + std::to_string(p + 1) +
-           (name.empty() ? "" : " ('" + name + "')");
-  }
-
-  std::string ContactProblem::Implementation::unknown_locus(const DoFIndex flat_index) const
-  {
-    const BlockLayout &layout = surfaces->layout();
-    if (flat_index >= layout.lambda(0))
-    {
-      const bool         pressure = flat_index < layout.Lambda(0, 0);
-      const unsigned int k        = pressure ? flat_index - layout.lambda(0) : (flat_index - layout.Lambda(0, 0)) / 2;
-      return (pressure ? "the contact multiplier of " : "the friction multiplier of ") + site_locus(k) +
-             ": this constraint repeats another one (over-constraint)";
-    }
-    std::map<DoFIndex, Point> points;
-    dealii::DoFTools::map_dofs_to_support_points(*mapping, dof_handler, points);
-    const auto  owner = points.find(flat_index);
-    std::string here =
-        owner == points.end() || !surfaces->layout().owned[0].is_element(flat_index) ? "" : coordinates(owner->second);
-    for (const auto &part : dealii::Utilities::MPI::all_gather(communicator, here))
-      if (!part.empty())
-        here = part;
-    return "the displacement of node " + here +
-           ": its body is free to move; hold it with a boundary condition, or close the contact first ('Initial status "
-           "= closed')";
-  }
-
   void ContactProblem::Implementation::commit()
   {
     std::vector<std::array<double, 2>> slip;
     for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
       slip.push_back(contact->slip(state, s));
     status->commit(slip);
-    committed = solution;
+    committed         = solution;
+    committed_pairing = pairing;
+    committed_area    = weights.area();
   }
 
   void ContactProblem::Implementation::roll_back()
   {
-    solution = committed;
+    solution   = committed;
+    pairing    = committed_pairing;
+    nodal_area = committed_area;
     status->roll_back();
+    gather_state();
   }
 } // namespace Nodus

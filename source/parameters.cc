@@ -28,6 +28,9 @@ namespace Nodus
         {BoundaryConditionParameters::Type::body_force, "body force"},
         {BoundaryConditionParameters::Type::spring, "spring"}};
 
+    const Names<LoopParameters::Mode> mode_names = {{LoopParameters::Mode::fixed_point, "fixed point"},
+                                                    {LoopParameters::Mode::newton, "newton"}};
+
     const Names<LinearSolverParameters::Type> solver_names = {{LinearSolverParameters::Type::direct, "direct"},
                                                               {LinearSolverParameters::Type::block, "block"},
                                                               {LinearSolverParameters::Type::condensed, "condensed"}};
@@ -146,8 +149,14 @@ namespace Nodus
       add_contact_pair(prm, pair);
     }
 
-    void add(ParameterHandler &prm, LoopParameters &loop, const std::string &tolerance)
+    void add(ParameterHandler &prm, LoopParameters &loop, const std::string &mode, const std::string &tolerance)
     {
+      add_choice(prm,
+                 "Mode",
+                 loop.mode,
+                 mode_names,
+                 "fixed point: a loop around Newton's method; newton: " + mode +
+                     " in each Newton iteration, with the loops of an increment that stalls as a fallback [-].");
       prm.add_parameter("Maximum passes", loop.maximum_passes, "Passes before the increment is cut [-].", at_least_one);
       if (!tolerance.empty())
         prm.add_parameter("Tolerance", loop.tolerance, tolerance, positive);
@@ -243,9 +252,15 @@ namespace Nodus
     add_subsection(prm,
                    "Geometry loop",
                    geometry_loop,
+                   "projections, normals and areas are renewed and linearised",
                    "Change of the displacement in a pass, relative to the displacement of the increment [-].");
-    add_subsection(prm, "Threshold loop", threshold_loop, "Change of the contact pressure, relative [-].");
-    add_subsection(prm, "Status loop", status_loop, ""); // no tolerance: no status may change
+    add_subsection(prm,
+                   "Threshold loop",
+                   threshold_loop,
+                   "the friction threshold follows the pressure and is linearised",
+                   "Change of the contact pressure, relative [-].");
+    // no tolerance: no status may change
+    add_subsection(prm, "Status loop", status_loop, "statuses are tested and changed", "");
     add_subsection(prm, "Newton", newton);
     add_subsection(prm, "Linear solver", linear_solver);
     add_subsection(prm, "Load stepping", load_stepping);

@@ -115,6 +115,13 @@ namespace Cases
     return p;
   }
 
+  /// Three nested loops around Newton, none merged into it.
+  inline void use_loops(Parameters &p)
+  {
+    for (LoopParameters *loop : {&p.geometry_loop, &p.threshold_loop, &p.status_loop})
+      loop->mode = LoopParameters::Mode::fixed_point;
+  }
+
   /// Runs with results in a folder named after the test; the log is dropped unless the environment asks for it.
   inline MPI_Comm world()
   {

@@ -43,11 +43,11 @@ struct ContactFixture
 
   void pair_at(const std::vector<Nodus::Point> &x)
   {
-    const Nodus::ContactGeometry geometry(pairs, *surfaces, x);
-    Nodus::AveragedJump          averaged;
-    averaged.compute(pairs, *surfaces, geometry, x, x);
-    pairing.project(pairs, *surfaces, geometry, averaged);
-    jump.build(pairs, *surfaces, geometry, pairing, averaged);
+    paired_at = x;
+    geometry  = std::make_unique<Nodus::ContactGeometry>(pairs, *surfaces, paired_at);
+    averaged.compute(pairs, *surfaces, *geometry, x, x);
+    pairing.project(pairs, *surfaces, *geometry, averaged);
+    jump.build(pairs, *surfaces, *geometry, pairing, averaged);
     weights.compute(pairs, *surfaces, averaged, x, x);
   }
 
@@ -74,6 +74,9 @@ struct ContactFixture
   dealii::FESystem<3>                       fe;
   dealii::DoFHandler<3>                     dof_handler;
   std::unique_ptr<Nodus::ContactSurfaces>   surfaces;
+  std::vector<Nodus::Point>                 paired_at;
+  std::unique_ptr<Nodus::ContactGeometry>   geometry;
+  Nodus::AveragedJump                       averaged;
   Nodus::Pairing                            pairing;
   Nodus::JumpOperator                       jump;
   Nodus::SurfaceWeights                     weights;

@@ -19,25 +19,39 @@
 
 namespace Nodus
 {
+  /// Which of the three nested loops are part of Newton's iteration.
+  struct MergedLoops
+  {
+    bool geometry = false, threshold = false, status = false;
+    bool any() const
+    {
+      return geometry || threshold || status;
+    }
+  };
+
   /// Everything a run owns. contact_problem.cc builds it, follows the load path and reports; load_increment.cc holds
-  /// the three nested loops and what Newton sees.
+  /// the three nested loops, newton_iterate.cc what Newton sees.
   struct ContactProblem::Implementation : public NewtonProblem
   {
     Implementation(const Parameters &parameters, MPI_Comm communicator, std::ostream &log);
 
     // The algorithm, outermost first.
-    void run();
-    void solve_increment();
-    void pair_surfaces();
-    bool geometry_converged(FixedPointLoop &loop);
-    bool threshold_converged(FixedPointLoop &loop);
-    bool statuses_converged(FixedPointLoop &loop);
+    void           run();
+    void           solve_increment();
+    void           solve_loops();
+    void           pair_surfaces();
+    bool           geometry_converged(FixedPointLoop &loop);
+    bool           threshold_converged(FixedPointLoop &loop);
+    bool           statuses_converged(FixedPointLoop &loop);
+    Status::Update update_statuses(bool closing_only = false);
 
     // Newton's view of it.
     Norms        assemble() override;
-    unsigned int solve(BlockVector &correction) override;
+    unsigned int solve(BlockVector &correction, double relative_tolerance) override;
     void         advance(double factor, const BlockVector &correction) override;
 
+    Norms       assemble_contact(const dealii::AffineConstraints<double> &constraints);
+    void        follow_pressure();
     void        gather_state();
     std::string site_locus(unsigned int site) const;
     std::string unknown_locus(DoFIndex flat_index) const;
@@ -61,6 +75,9 @@ namespace Nodus
     std::unique_ptr<SolidAssembler>             solid;
 
     std::unique_ptr<ContactSurfaces>  surfaces;
+    std::vector<Point>                paired_at; ///< positions of the surface nodes at the last pairing
+    std::unique_ptr<ContactGeometry>  geometry;  ///< of that
+    AveragedJump                      averaged;
     Pairing                           pairing;
     JumpOperator                      jump;
     SurfaceWeights                    weights;
@@ -74,12 +91,17 @@ namespace Nodus
     double                        stiffness_scale = 0.; ///< largest diagonal entry of the first bulk tangent
     double                        length_scale; ///< displacements are measured against this when the step moves nothing
 
+    Pairing             committed_pairing;          ///< at the start of the load step
+    std::vector<double> nodal_area, committed_area; ///< that the multipliers of solution and committed refer to
+
     ContactState         state;
     ContactResidual      residual;
     std::vector<Vector3> u_start, u_geometry,
         u_before_geometry;             ///< surface nodes: step start, this and the previous pairing
     std::vector<unsigned int> cycling; ///< some of the nodes of the last status cycle
-    bool                      paired_before = false;
+    bool                      paired_before = false, newton_starts = true;
+    double                    prescribed_before = 0.; ///< still to be met at the last assembly, relative
+    MergedLoops               merged;                 ///< in this attempt at the increment
 
     double          time = 0.;
     IterationCounts pass, counts; ///< where the loops stand, and totals of the increment

@@ -149,8 +149,14 @@ namespace Nodus
 
   struct LoopParameters
   {
+    enum class Mode
+    {
+      fixed_point,
+      newton
+    };
     unsigned int maximum_passes = 10;
-    double       tolerance      = 0.; ///< relative; the status loop has none: no status may change
+    double       tolerance      = 0.;                ///< relative; the status loop has none: no status may change
+    Mode         mode           = Mode::fixed_point; ///< newton: part of each Newton iteration, no loop
   };
 
   struct NewtonParameters
@@ -195,9 +201,9 @@ namespace Nodus
     std::vector<BodyParameters>              bodies;
     std::vector<BoundaryConditionParameters> boundary_conditions;
     std::vector<ContactPairParameters>       contact_pairs;
-    LoopParameters                           geometry_loop  = {15, 0.01};
-    LoopParameters                           threshold_loop = {30, 1e-4};
-    LoopParameters                           status_loop    = {30, 0.};
+    LoopParameters                           geometry_loop  = {15, 0.01, LoopParameters::Mode::newton};
+    LoopParameters                           threshold_loop = {30, 1e-4, LoopParameters::Mode::newton};
+    LoopParameters                           status_loop    = {30, 0., LoopParameters::Mode::newton};
     NewtonParameters                         newton;
     LinearSolverParameters                   linear_solver;
     LoadSteppingParameters                   load_stepping;

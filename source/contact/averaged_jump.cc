@@ -79,14 +79,15 @@ namespace Nodus
       return covered / area;
     }
 
-    /// Integrates one face.
+    /// Integrates one face; @p all_psi is overwritten.
     FaceRows integrate(const ContactPairParameters    &pair,
                        const SurfaceGeometry          &slave,
                        const unsigned int              f,
                        const SurfaceGeometry          &master,
                        const std::vector<MortarPoint> &points,
                        const double                    coverage,
-                       const std::vector<Point>       &measure)
+                       const std::vector<Point>       &measure,
+                       std::vector<double>            &all_psi)
     {
       const unsigned int degree = slave.degree(), n = (degree + 1) * (degree + 1);
       const SurfaceFace &face = slave.face(f);
@@ -116,6 +117,7 @@ namespace Nodus
       const unsigned int n_columns = result.nodes.size() + 2;
       result.weights.assign(n * n_columns, 0.);
       result.vectors.assign(6 * n, 0.);
+      all_psi.resize(n * points.size());
       for (unsigned int q = 0; q < points.size(); ++q)
       {
         const MortarPoint             &point = points[q];
@@ -138,7 +140,8 @@ namespace Nodus
               std::find(result.nodes.begin() + n, result.nodes.end(), master_face.nodes[b]) - result.nodes.begin();
         for (unsigned int a = 0; a < n; ++a)
         {
-          double *const row = result.weights.data() + a * n_columns;
+          double *const row  = result.weights.data() + a * n_columns;
+          all_psi[n * q + a] = psi[a];
           for (unsigned int b = 0; b < n; ++b)
           {
             row[b] += psi[a] * shape.value[b];
@@ -172,6 +175,8 @@ namespace Nodus
             row[b] *= scale;
           for (unsigned int c = 0; c < dim; ++c)
             result.vectors[6 * a + c] *= scale;
+          for (unsigned int q = 0; q < points.size(); ++q)
+            all_psi[n * q + a] *= scale;
         }
         row[n_columns - 1] = coverage > 0. ? row[n_columns - 2] / coverage : 0.;
       }
@@ -200,9 +205,9 @@ namespace Nodus
     const MPI_Comm     communicator = surfaces.layout().communicator;
     const unsigned int rank         = dealii::Utilities::MPI::this_mpi_process(communicator);
 
-    std::vector<FaceRows>    mine;
-    std::vector<MortarPoint> points;
-    bool                     any = false;
+    std::vector<FaceRows> mine;
+    faces_.clear();
+    bool any = false;
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
       if (pairs[p].scheme != ContactPairParameters::Scheme::averaged)
@@ -215,17 +220,20 @@ namespace Nodus
       {
         if (geometry.slave[p].face(f).owner != rank)
           continue;
-        const double coverage =
+        faces_.push_back({p, f, {}, {}});
+        std::vector<MortarPoint> &points = faces_.back().points;
+        const double              coverage =
             segments ? segment_points(
                            geometry.slave[p], f, geometry.master[p], geometry.search[p], geometry.reach[p], points)
-                     : face_points(geometry.slave[p],
+                                  : face_points(geometry.slave[p],
                                    f,
                                    rule,
                                    geometry.search[p],
                                    geometry.reach[p],
                                    pairs[p].projection_tolerance,
                                    points);
-        mine.push_back(integrate(pairs[p], geometry.slave[p], f, geometry.master[p], points, coverage, measure));
+        mine.push_back(integrate(
+            pairs[p], geometry.slave[p], f, geometry.master[p], points, coverage, measure, faces_.back().psi));
         mine.back().pair = p;
       }
     }

@@ -86,13 +86,48 @@ namespace Nodus
     return result;
   }
 
-  ContactResidual ContactAssembler::assemble(const ContactState &state, LinearSystem &system) const
+  std::vector<std::vector<std::pair<unsigned int, double>>> ContactAssembler::threshold_derivative() const
+  {
+    // lambda_bar of slave nodes is (M S lambda)_j / m_j, lambda of integration points the interpolated one.
+    std::vector<std::vector<std::pair<unsigned int, double>>> derivative(surfaces_.n_sites());
+    const auto add = [&](const unsigned int site, const unsigned int k, const double weight)
+    {
+      const double value = status_.friction_coefficient(site) * weight;
+      for (auto &[slave, sum] : derivative[site])
+        if (slave == k)
+        {
+          sum += value;
+          return;
+        }
+      derivative[site].emplace_back(k, value);
+    };
+    for (const ContactPoint &point : weights_.points())
+      for (unsigned int b = 0; b < point.slaves.size(); ++b)
+        if (point.site != dealii::numbers::invalid_unsigned_int)
+        {
+          if (status_.friction(point.site))
+            add(point.site, point.slaves[b], point.shape[b]);
+        }
+        else if (status_.contact(point.slaves[b]))
+          for (unsigned int a = 0; a < point.slaves.size(); ++a)
+            if (const unsigned int k = point.slaves[a]; status_.friction(k))
+              add(k, point.slaves[b], point.weight * point.shape[a] * point.shape[b] / weights_.area()[k]);
+    return derivative;
+  }
+
+  ContactResidual
+  ContactAssembler::assemble(const ContactState &state, LinearSystem &system, const bool linearise_threshold) const
   {
     const BlockLayout &layout  = surfaces_.layout();
     const unsigned int rank    = dealii::Utilities::MPI::this_mpi_process(layout.communicator);
     const unsigned int n       = layout.n_slave_nodes;
     const unsigned int n_sites = surfaces_.n_sites();
     system.contact.clear();
+    system.variation.clear();
+    const bool unsymmetric = linearise_threshold && status_.has_friction();
+    system.symmetric       = !unsymmetric;
+    const auto d_threshold =
+        unsymmetric ? threshold_derivative() : std::vector<std::vector<std::pair<unsigned int, double>>>();
 
     // Residual and right-hand side: three components of each jump, then lambda and two Lambda of each slave node.
     const unsigned int  n_jump = 3 * n_sites;
@@ -102,7 +137,7 @@ namespace Nodus
     std::vector<PointJump>    jumps;
     std::vector<unsigned int> position; // of the point's unknowns in residual and rhs
     LocalMatrix               A;
-    LocalVector               r, b;
+    LocalVector               r, b, r_t; // r_t: derivative of r with respect to the threshold at the point
     for (const ContactPoint &point : weights_.points())
     {
       if (point.owner != rank)
@@ -181,15 +216,19 @@ namespace Nodus
       const unsigned int n_unknowns = first + 3 * n_nodes;
       A.setZero(n_unknowns, n_unknowns);
       r.setZero(n_unknowns);
+      r_t.setZero(n_unknowns);
       b.setZero(n_unknowns);
       position.resize(n_unknowns);
-      const double W = point.weight, Wt = point.weight * threshold;
+      const double  W = point.weight, Wt = point.weight * threshold;
+      const Column3 pi_t = slips ? Column3(K_B * slip_slip * (h_tau / -threshold)) : pi; // h_tau ~ 1/threshold
       for (unsigned int a = 0; a < n_jumps; ++a)
       {
         const PointJump &i  = jumps[a];
         const unsigned   ia = 3 * a;
         r.segment<3>(ia)    = -W * i.contact * lambda_c * i.normal - Wt * i.stick * i.projector * Lambda_stick -
                            Wt * i.slip * i.projector * pi;
+        r_t.segment<3>(ia) = -W * i.projector * ((n_nodes > 1 ? i.stick : 0.) * Lambda_stick + i.slip * pi) -
+                             Wt * i.slip * i.projector * pi_t;
         b.segment<3>(ia) = eigen(jump_.jump(i.site, state.prescribed));
         for (unsigned int l = 0; l < 3; ++l)
           position[ia + l] = 3 * i.site + l;
@@ -216,6 +255,10 @@ namespace Nodus
         r(ia) = -W * i.open * lambda_o / h_n - W * i.contact * distance;
         r.segment<2>(ia + 1) =
             -Wt * i.stick * i.tangent * slip_stick + (Wt / h_tau) * i.slip * i.tangent * (Lambda_slip - pi);
+        r_t.segment<2>(ia + 1) = -(Wt / h_tau) * i.slip * i.tangent * pi_t;
+        if (n_nodes > 1)
+          r_t.segment<2>(ia + 1) +=
+              -W * i.stick * i.tangent * slip_stick + (2. * W / h_tau) * i.slip * i.tangent * (Lambda_slip - pi);
         for (unsigned int t = 0; t < 2; ++t)
           r(ia + 1 + t) -= W * i.void_tangent[t] * Lambda_void[t].dot(i.axis[t]);
         for (unsigned int l = 0; l < 3; ++l)
@@ -266,6 +309,16 @@ namespace Nodus
                                                   system.contact.add(row, column, row_weight * column_weight * A(i, j));
                                                 });
                              });
+      if (unsymmetric)
+        for (const PointJump &jump : jumps)
+          if (jump.slip != 0. || (jump.stick != 0. && n_nodes > 1))
+            for (const auto &[k, derivative] : d_threshold[jump.site])
+              for (unsigned int i = 0; i < n_unknowns; ++i)
+                if (r_t(i) != 0.)
+                  for_each_unknown(
+                      i,
+                      [&](const DoFIndex row, const double weight)
+                      { system.variation.add(row, layout.lambda(k), weight * r_t(i) * jump.contact * derivative); });
     }
 
     dealii::Utilities::MPI::sum(residual, layout.communicator, residual);

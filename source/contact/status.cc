@@ -12,6 +12,8 @@ namespace Nodus
     constexpr double noise = 1e-10;
     /// Thresholds below this fraction of the largest count as frictionless: their friction rows would be singular.
     constexpr double relative_threshold_floor = 1e-6;
+    /// A merged loop may come back to a visited status vector this often while the iterate still moves.
+    constexpr unsigned int tolerated_returns = 3;
     /// Gap in face sizes up to which a node starts closed.
     constexpr double initial_gap = 1e-6;
   } // namespace
@@ -82,6 +84,7 @@ namespace Nodus
 
   void Status::freeze_threshold(const std::vector<double> &site_pressure)
   {
+    note_friction();
     for (unsigned int k = 0; k < site_pressure.size(); ++k)
       now_.threshold[k] = pairs_[surfaces_.pair(k)].friction_coefficient * std::min(site_pressure[k], 0.);
     update_floor();
@@ -99,14 +102,24 @@ namespace Nodus
     ledger_.assign(ledger_.size(), StatusLedger());
   }
 
-  void Status::begin_loop()
+  void Status::begin_loop(const bool merged)
   {
     visited_.clear();
     opened_.assign(now_.contact.size(), false);
     one_at_a_time_ = false;
+    merged_        = merged;
+    returns_       = 0;
+    note_friction();
   }
 
-  Status::Update Status::update(const StatusInput &input)
+  void Status::note_friction()
+  {
+    had_friction_.resize(now_.contact.size());
+    for (unsigned int k = 0; k < had_friction_.size(); ++k)
+      had_friction_[k] = friction(k);
+  }
+
+  Status::Update Status::update(const StatusInput &input, const bool closing_only)
   {
     const auto code = [&]()
     {
@@ -135,7 +148,7 @@ namespace Nodus
         found = Contradiction::tension;
       else if (!now_.contact[k] && value < -tolerance)
         found = Contradiction::penetration;
-      else if (friction(k))
+      else if (friction(k) && (!merged_ || had_friction_[k]))
       {
         const double rho = tangential_augmentation(k, now_.threshold[k]);
         const double norm =
@@ -145,7 +158,7 @@ namespace Nodus
         else if (!now_.stick[k] && norm < 1. - noise)
           found = Contradiction::against_slip;
       }
-      if (found == Contradiction::none)
+      if (found == Contradiction::none || (closing_only && found != Contradiction::penetration))
         continue;
 
       now_.contact[k] = found != Contradiction::tension;
@@ -159,6 +172,7 @@ namespace Nodus
       if (one_at_a_time_)
         break;
     }
+    note_friction(); // of the next system
     result.changes = result.sites.size();
     if (result.changes == 0)
       return result;
@@ -177,8 +191,8 @@ namespace Nodus
           if (a[k] != b[k])
             ledger_[k].period = result.period;
       }
-      result.cycles  = one_at_a_time_;
-      one_at_a_time_ = true;
+      result.cycles  = merged_ ? ++returns_ > tolerated_returns : one_at_a_time_;
+      one_at_a_time_ = !merged_;
       visited_.assign(1, code());
     }
     return result;

@@ -11,6 +11,25 @@ namespace Nodus
     constexpr double smooth_cosine = 0.70710678;
     /// Least length of an averaged normal in the plane of symmetry of its node, before it is made a unit vector.
     constexpr double in_plane = 0.5;
+
+    /// Corners of the edges of a face, and their middles as nodes of the quadratic face.
+    constexpr unsigned int edges[4][3] = {{0, 1, 1}, {0, 2, 3}, {1, 3, 5}, {2, 3, 7}};
+
+    /// [v] with [v] w = v x w.
+    dealii::Tensor<2, dim> cross_matrix(const Vector3 &v)
+    {
+      return dealii::Tensor<2, dim>({{0., -v[2], v[1]}, {v[2], 0., -v[0]}, {-v[1], v[0], 0.}});
+    }
+
+    /// Derivative of v/|v|.
+    dealii::Tensor<2, dim> unit_derivative(const Vector3 &v)
+    {
+      const double           norm   = v.norm();
+      dealii::Tensor<2, dim> result = -1. / (norm * norm * norm) * dealii::outer_product(v, v);
+      for (unsigned int c = 0; c < dim; ++c)
+        result[c][c] += 1. / norm;
+      return result;
+    }
   } // namespace
 
   SurfaceGeometry::SurfaceGeometry(const std::vector<SurfaceFace>           &faces,
@@ -20,10 +39,11 @@ namespace Nodus
                                    const ContactPairParameters::Surface      surface)
       : faces_(faces)
       , positions_(positions)
+      , fixed_(fixed)
       , degree_(degree)
       , shape_degree_(degree)
   {
-    average_normals(fixed);
+    average_normals();
     if (surface == ContactPairParameters::Surface::smoothed && degree == 1)
     {
       shape_degree_ = 2;
@@ -35,56 +55,153 @@ namespace Nodus
         points_.push_back(positions[n]);
   }
 
-  void SurfaceGeometry::average_normals(const std::vector<std::array<bool, dim>> &fixed)
+  void add(std::vector<NodeDerivative> &derivative, const unsigned int node, const dealii::Tensor<2, dim> &value)
   {
-    const unsigned int     n_face_nodes = (degree_ + 1) * (degree_ + 1);
-    std::vector<FaceShape> shapes;
-    for (unsigned int n = 0; n < n_face_nodes; ++n)
-      shapes.emplace_back(degree_, 1. / degree_ * (n % (degree_ + 1)), 1. / degree_ * (n / (degree_ + 1)));
+    for (NodeDerivative &d : derivative)
+      if (d.node == node)
+      {
+        d.value += value;
+        return;
+      }
+    derivative.push_back({node, value});
+  }
 
-    // Normal and weighted normal of every face at each of its nodes, and where each surface node occurs.
-    std::vector<Vector3>      unit(faces_.size() * n_face_nodes), weighted(unit.size());
-    std::vector<unsigned int> start(positions_.size() + 1, 0), occurrence(unit.size());
+  void SurfaceGeometry::average_normals()
+  {
+    const unsigned int n_face_nodes = (degree_ + 1) * (degree_ + 1);
+    for (unsigned int n = 0; n < n_face_nodes; ++n)
+      node_shapes_.emplace_back(degree_, 1. / degree_ * (n % (degree_ + 1)), 1. / degree_ * (n / (degree_ + 1)));
+
+    unit_.resize(faces_.size() * n_face_nodes);
+    occurrence_.resize(unit_.size());
+    start_.assign(positions_.size() + 1, 0);
     for (const SurfaceFace &face : faces_)
       for (const unsigned int n : face.nodes)
-        ++start[n + 1];
+        ++start_[n + 1];
     for (unsigned int i = 0; i < positions_.size(); ++i)
-      start[i + 1] += start[i];
-    std::vector<unsigned int> next(start.begin(), start.end() - 1);
+      start_[i + 1] += start_[i];
+    std::vector<unsigned int> next(start_.begin(), start_.end() - 1);
     for (unsigned int f = 0; f < faces_.size(); ++f)
       for (unsigned int n = 0; n < n_face_nodes; ++n)
       {
-        const FaceGeometry geometry(faces_[f], shapes[n], positions_);
-        const Vector3      area                = faces_[f].orientation * geometry.area_vector();
-        const unsigned int here                = f * n_face_nodes + n;
-        unit[here]                             = area / area.norm();
-        weighted[here]                         = area / (geometry.d_xi.norm_square() * geometry.d_eta.norm_square());
-        occurrence[next[faces_[f].nodes[n]]++] = here;
+        const Vector3 area = faces_[f].orientation * FaceGeometry(faces_[f], node_shapes_[n], positions_).area_vector();
+        const unsigned int here                 = f * n_face_nodes + n;
+        unit_[here]                             = area / area.norm();
+        occurrence_[next[faces_[f].nodes[n]]++] = here;
       }
 
-    nodal_normals_.resize(unit.size());
+    nodal_normals_.resize(unit_.size());
     for (unsigned int f = 0; f < faces_.size(); ++f)
       for (unsigned int n = 0; n < n_face_nodes; ++n)
       {
-        const unsigned int here = f * n_face_nodes + n, node = faces_[f].nodes[n];
-        Vector3            normal;
-        for (unsigned int i = start[node]; i < start[node + 1]; ++i)
-          if (unit[occurrence[i]] * unit[here] > smooth_cosine)
-            normal += weighted[occurrence[i]];
+        const unsigned int node   = faces_[f].nodes[n];
+        Vector3            normal = sum_of_normals(f, n);
         normal /= normal.norm();
-
-        Vector3      symmetric = normal;
-        unsigned int held      = 0;
-        for (unsigned int c = 0; c < dim; ++c)
-          if (fixed[node][c])
-          {
-            ++held;
-            symmetric[c] = 0.;
-          }
-        if (held > 0 && held < dim && symmetric.norm() > in_plane)
-          normal = symmetric / symmetric.norm();
-        nodal_normals_[here] = normal;
+        if (on_symmetry_plane(node, normal))
+        {
+          for (unsigned int c = 0; c < dim; ++c)
+            if (fixed_[node][c])
+              normal[c] = 0.;
+          normal /= normal.norm();
+        }
+        nodal_normals_[f * n_face_nodes + n] = normal;
       }
+  }
+
+  Vector3 SurfaceGeometry::sum_of_normals(const unsigned int f, const unsigned int n) const
+  {
+    const unsigned int n_face_nodes = node_shapes_.size(), node = faces_[f].nodes[n];
+    Vector3            sum;
+    for (unsigned int i = start_[node]; i < start_[node + 1]; ++i)
+      if (unit_[occurrence_[i]] * unit_[f * n_face_nodes + n] > smooth_cosine)
+      {
+        const SurfaceFace &face = faces_[occurrence_[i] / n_face_nodes];
+        const FaceGeometry geometry(face, node_shapes_[occurrence_[i] % n_face_nodes], positions_);
+        sum += face.orientation / (geometry.d_xi.norm_square() * geometry.d_eta.norm_square()) * geometry.area_vector();
+      }
+    return sum;
+  }
+
+  bool SurfaceGeometry::on_symmetry_plane(const unsigned int node, const Vector3 &normal) const
+  {
+    unsigned int held = 0;
+    double       free = 0.; // squared length of the normal in the plane
+    for (unsigned int c = 0; c < dim; ++c)
+    {
+      held += fixed_[node][c];
+      free += fixed_[node][c] ? 0. : normal[c] * normal[c];
+    }
+    return held > 0 && held < dim && free > in_plane * in_plane;
+  }
+
+  void SurfaceGeometry::nodal_normal_derivative(const unsigned int           f,
+                                                const unsigned int           n,
+                                                std::vector<NodeDerivative> &derivative) const
+  {
+    const unsigned int     n_face_nodes = node_shapes_.size(), node = faces_[f].nodes[n];
+    const Vector3          sum     = sum_of_normals(f, n);
+    dealii::Tensor<2, dim> to_unit = unit_derivative(sum);
+    if (on_symmetry_plane(node, sum / sum.norm()))
+    {
+      Vector3                free = sum;
+      dealii::Tensor<2, dim> projector;
+      for (unsigned int c = 0; c < dim; ++c)
+        if (fixed_[node][c])
+          free[c] = 0.;
+        else
+          projector[c][c] = 1.;
+      to_unit = unit_derivative(free) * projector;
+    }
+    for (unsigned int i = start_[node]; i < start_[node + 1]; ++i)
+      if (unit_[occurrence_[i]] * unit_[f * n_face_nodes + n] > smooth_cosine)
+      {
+        const SurfaceFace &face  = faces_[occurrence_[i] / n_face_nodes];
+        const FaceShape   &shape = node_shapes_[occurrence_[i] % n_face_nodes];
+        const FaceGeometry geometry(face, shape, positions_);
+        const Vector3     &a = geometry.d_xi, &b = geometry.d_eta;
+        const double       scale  = face.orientation / (a.norm_square() * b.norm_square());
+        const Vector3      normal = scale * geometry.area_vector();
+        const auto         to_a   = -scale * cross_matrix(b) - 2. / a.norm_square() * dealii::outer_product(normal, a);
+        const auto         to_b   = scale * cross_matrix(a) - 2. / b.norm_square() * dealii::outer_product(normal, b);
+        for (unsigned int m = 0; m < shape.n; ++m)
+          if (shape.d_xi[m] != 0. || shape.d_eta[m] != 0.)
+            add(derivative, face.nodes[m], to_unit * (shape.d_xi[m] * to_a + shape.d_eta[m] * to_b));
+      }
+  }
+
+  void SurfaceGeometry::averaged_normal_derivative(const unsigned int           f,
+                                                   const double                 xi,
+                                                   const double                 eta,
+                                                   std::vector<NodeDerivative> &derivative) const
+  {
+    const FaceShape shape(degree_, xi, eta);
+    Vector3         sum;
+    for (unsigned int n = 0; n < shape.n; ++n)
+      sum += shape.value[n] * nodal_normal(f, n);
+    const dealii::Tensor<2, dim> to_unit = unit_derivative(sum);
+    std::vector<NodeDerivative>  nodal;
+    for (unsigned int n = 0; n < shape.n; ++n)
+      if (shape.value[n] != 0.)
+      {
+        nodal.clear();
+        nodal_normal_derivative(f, n, nodal);
+        for (const NodeDerivative &d : nodal)
+          add(derivative, d.node, shape.value[n] * to_unit * d.value);
+      }
+  }
+
+  void SurfaceGeometry::normal_derivative(const unsigned int           f,
+                                          const double                 xi,
+                                          const double                 eta,
+                                          std::vector<NodeDerivative> &derivative) const
+  {
+    const FaceGeometry           geometry = at(f, xi, eta);
+    const FaceShape              shape(degree_, xi, eta);
+    const dealii::Tensor<2, dim> to_unit = faces_[f].orientation * unit_derivative(geometry.area_vector());
+    for (unsigned int n = 0; n < shape.n; ++n)
+      add(derivative,
+          faces_[f].nodes[n],
+          to_unit * (shape.d_eta[n] * cross_matrix(geometry.d_xi) - shape.d_xi[n] * cross_matrix(geometry.d_eta)));
   }
 
   void SurfaceGeometry::smooth()
@@ -107,13 +224,46 @@ namespace Nodus
       // corner n of the face is node 2 (n % 2) + 6 (n / 2) of the quadratic one
       for (unsigned int n = 0; n < 4; ++n)
         x[2 * (n % 2) + 6 * (n / 2)] = corner(n);
-      const unsigned int edges[4][3] = {{0, 1, 1}, {0, 2, 3}, {1, 3, 5}, {2, 3, 7}};
       for (const auto &[a, b, m] : edges)
         x[m] = middle(corner(a), corner(b), nodal_normal(f, a), nodal_normal(f, b));
       // eight-node face
       x[4] = Point(0.5 * (Vector3(x[1]) + Vector3(x[3]) + Vector3(x[5]) + Vector3(x[7])) -
                    0.25 * (Vector3(x[0]) + Vector3(x[2]) + Vector3(x[6]) + Vector3(x[8])));
     }
+  }
+
+  double SurfaceGeometry::edge_function(const unsigned int edge, const double xi, const double eta)
+  {
+    const FaceShape shape(2, xi, eta); // the centre takes half of each middle
+    return shape.value[edges[edge][2]] + 0.5 * shape.value[4];
+  }
+
+  std::vector<NodeDerivative> SurfaceGeometry::edge_derivative(const unsigned int f, const unsigned int edge) const
+  {
+    const unsigned int a = edges[edge][0], b = edges[edge][1];
+    const Vector3      chord = positions_[faces_[f].nodes[b]] - positions_[faces_[f].nodes[a]];
+    const Vector3     &n_a = nodal_normal(f, a), &n_b = nodal_normal(f, b);
+    const Vector3      sum = n_a + n_b, m = sum / sum.norm(), bend = n_b - n_a;
+    const double       length = chord.norm(), sine = std::clamp(0.5 * (chord * bend) / length, -0.7, 0.7);
+    const double       angle = std::asin(sine), half_tangent = std::tan(0.5 * angle);
+    // sagitta = length/2 tan(angle/2), sin(angle) = q/length, q = chord . bend / 2
+    const double sagitta   = 0.5 * length * half_tangent;
+    const double to_q      = 0.25 * (1. + half_tangent * half_tangent) / std::cos(angle);
+    const double to_length = 0.5 * half_tangent - to_q * sine;
+
+    std::vector<NodeDerivative> derivative, nodal;
+    const Vector3               to_chord = 0.5 * to_q * bend + to_length / length * chord;
+    add(derivative, faces_[f].nodes[b], dealii::outer_product(m, to_chord));
+    add(derivative, faces_[f].nodes[a], -dealii::outer_product(m, to_chord));
+    const auto turn = sagitta * unit_derivative(sum), bending = 0.5 * to_q * dealii::outer_product(m, chord);
+    nodal_normal_derivative(f, a, nodal);
+    for (const NodeDerivative &d : nodal)
+      add(derivative, d.node, (turn - bending) * d.value);
+    nodal.clear();
+    nodal_normal_derivative(f, b, nodal);
+    for (const NodeDerivative &d : nodal)
+      add(derivative, d.node, (turn + bending) * d.value);
+    return derivative;
   }
 
   Vector3 SurfaceGeometry::normal(const unsigned int f, const double xi, const double eta) const

@@ -20,7 +20,7 @@ namespace Nodus
                                     "open nodes,slip nodes,stick nodes,unpaired nodes,"
                                     "geometry passes,threshold passes,status passes,Newton iterations,"
                                     "Krylov iterations,status changes,tension,penetration,over cone,against slip,"
-                                    "longest status cycle\n";
+                                    "longest status cycle,fallbacks\n";
 
     constexpr auto reaction_header = "increment,time,condition,force x [force],force y [force],force z [force]\n";
 
@@ -77,7 +77,7 @@ namespace Nodus
                      << pair.status_changes;
         for (const unsigned int n : pair.contradictions)
           contact_rows << ',' << n;
-        contact_rows << ',' << pair.longest_cycle << '\n';
+        contact_rows << ',' << pair.longest_cycle << ',' << counts.fallbacks << '\n';
       }
       contact_rows_ += contact_rows.str();
 

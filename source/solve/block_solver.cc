@@ -17,8 +17,10 @@ namespace Nodus
   {
   }
 
-  LinearSolver::Report BlockSolver::solve(const LinearSystem &system, BlockVector &solution)
+  LinearSolver::Report
+  BlockSolver::solve(const LinearSystem &system, BlockVector &solution, const double relative_tolerance)
   {
+    const double              tolerance = std::max(parameters_.tolerance, relative_tolerance);
     const SaddlePointOperator matrix(system);
     const BlockVector         b = matrix.rhs();
     BlockVector               x, r;
@@ -35,7 +37,7 @@ namespace Nodus
       {
         std::ostringstream message;
         message << "Block solver: relative residual " << residual / norm_b << " after " << report.iterations
-                << " iterations (wanted: " << parameters_.tolerance
+                << " iterations (wanted: " << tolerance
                 << "); use 'Type = direct' or change 'Augmentation factor' (good values lie between 1 and 10).";
         throw SolverFailure(message.str());
       };
@@ -43,10 +45,10 @@ namespace Nodus
       const BlockPreconditioner preconditioner(matrix, parameters_.augmentation_factor, rigid_body_data_);
       double                    residual = norm_b;
       // The residual that FGMRES carries along can drift from the true one: start again until that one is small.
-      for (unsigned int start = 0; start < 3 && !(residual <= parameters_.tolerance * norm_b); ++start)
+      for (unsigned int start = 0; start < 3 && !(residual <= tolerance * norm_b); ++start)
       {
         dealii::SolverControl control(
-            parameters_.maximum_iterations - report.iterations, .9 * parameters_.tolerance * norm_b, false, false);
+            parameters_.maximum_iterations - report.iterations, .9 * tolerance * norm_b, false, false);
         dealii::SolverFGMRES<BlockVector> fgmres(control, dealii::SolverFGMRES<BlockVector>::AdditionalData(60));
         try
         {
@@ -62,7 +64,7 @@ namespace Nodus
         r.sadd(-1., 1., b);
         residual = r.l2_norm();
       }
-      if (!(residual <= parameters_.tolerance * norm_b))
+      if (!(residual <= tolerance * norm_b))
         fail(residual);
       report.relative_residual = matrix.unscaled_norm(r) / matrix.unscaled_norm(b);
     }

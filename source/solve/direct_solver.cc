@@ -93,11 +93,11 @@ namespace Nodus
     MPI_Comm       communicator;
     bool           analysed = false;
 
-    explicit Instance(const MPI_Comm communicator)
+    Instance(const MPI_Comm communicator, const bool symmetric)
         : communicator(communicator)
     {
       mumps.par          = 1; // rank 0 takes part in the factorisation
-      mumps.sym          = 2; // general symmetric
+      mumps.sym          = symmetric ? 2 : 0;
       mumps.comm_fortran = MPI_Comm_c2f(communicator);
       run(-1);
       for (unsigned int i = 1; i <= 4; ++i)
@@ -132,6 +132,7 @@ namespace Nodus
   DirectSolver::DirectSolver(const BlockLayout &layout)
       : communicator_(layout.communicator)
       , size_(0)
+      , symmetric_(true)
   {
   }
 
@@ -172,15 +173,15 @@ namespace Nodus
                    [&](const unsigned int c, const double *block, const bool transposed)
                    {
                      const DoFIndex row = dim * nodes.global(r), column = dim * nodes.global(c);
-                     if (!transposed && row <= column)
-                       for (unsigned int i = 0; i < dim; ++i)
-                         for (unsigned int j = row == column ? i : 0; j < dim; ++j)
-                           add(row + i, column + j, block[dim * i + j]);
+                     for (unsigned int i = 0; i < dim; ++i)
+                       for (unsigned int j = 0; j < dim; ++j)
+                         if (row + i <= column + j || !symmetric_)
+                           add(row + i, column + j, block[transposed ? dim * j + i : dim * i + j]);
                    });
-    const TripletMatrix &contact = system.contact;
-    for (std::size_t k = 0; k < contact.value.size(); ++k)
-      if (contact.row[k] <= contact.column[k])
-        add(contact.row[k], contact.column[k], contact.value[k]);
+    for (const TripletMatrix *part : {&system.contact, &system.variation})
+      for (std::size_t k = 0; k < part->value.size(); ++k)
+        if (part->row[k] <= part->column[k] || !symmetric_)
+          add(part->row[k], part->column[k], part->value[k]);
 
     if (n_entries != row_.size())
     {
@@ -197,7 +198,7 @@ namespace Nodus
   void DirectSolver::factorise(const bool pattern_changed)
   {
     if (!instance_)
-      instance_ = std::make_unique<Instance>(communicator_);
+      instance_ = std::make_unique<Instance>(communicator_, symmetric_);
     DMUMPS_STRUC_C &mumps = instance_->mumps;
 
     mumps.n       = size_;
@@ -254,7 +255,7 @@ namespace Nodus
     {
       const int i = row_[k] - 1, j = column_[k] - 1;
       r[i] -= value_[k] * x[j];
-      if (i != j)
+      if (symmetric_ && i != j)
         r[j] -= value_[k] * x[i];
     }
     dealii::Utilities::MPI::sum(r, communicator_, r);
@@ -263,13 +264,17 @@ namespace Nodus
     return r;
   }
 
-  LinearSolver::Report DirectSolver::solve(const LinearSystem &system, BlockVector &solution)
+  LinearSolver::Report DirectSolver::solve(const LinearSystem &system, BlockVector &solution, double)
   {
     const BlockLayout &layout = *system.layout;
     if (layout.size() >= static_cast<DoFIndex>(std::numeric_limits<int>::max()))
       throw SolverFailure("Direct solver: too many unknowns for MUMPS, use 'Type = block'.");
     const bool same_size = size_ == static_cast<int>(layout.size());
     size_                = layout.size();
+
+    if (symmetric_ != system.symmetric)
+      instance_.reset(); // MUMPS takes the kind of matrix once
+    symmetric_ = system.symmetric;
 
     const std::vector<double> scale   = gather_scale(system);
     const bool                changed = collect_entries(system, scale);
@@ -324,8 +329,9 @@ namespace Nodus
     }
     report.relative_residual = norm(r) / (norm_b > 0. ? norm(b) : 1.);
 
-    DMUMPS_STRUC_C &mumps  = instance_->mumps;
-    report.negative_pivots = infog(mumps, 12);
+    DMUMPS_STRUC_C &mumps = instance_->mumps;
+    if (symmetric_)
+      report.negative_pivots = infog(mumps, 12);
     std::vector<int> null_pivots(infog(mumps, 28));
     if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
       std::copy_n(mumps.pivnul_list, null_pivots.size(), null_pivots.begin());

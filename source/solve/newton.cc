@@ -2,7 +2,9 @@
 
 #include <deal.II/lac/trilinos_parallel_block_vector.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace Nodus
@@ -10,6 +12,19 @@ namespace Nodus
   namespace
   {
     constexpr unsigned int maximum_halvings = 5;
+
+    // Forcing terms of Eisenstat & Walker (1996), choice 2.
+    constexpr double largest_forcing = 1e-2;
+    constexpr double forcing_factor  = 0.9;
+
+    /// @p residual and @p before in units of the tolerance; @p last: forcing term before this one. The last correction
+    /// need not overshoot the tolerance by more than a digit, and terms fall no faster than Newton converges.
+    double forcing_term(const double residual, const double before, const double last)
+    {
+      const double ratio = residual / before;
+      const double term  = std::max(forcing_factor * ratio * ratio, forcing_factor * last * last);
+      return std::min(largest_forcing, std::max(term, 0.1 / residual));
+    }
 
     [[noreturn]] void fail(const std::string &reason, const NewtonProblem::Norms &norms)
     {
@@ -20,15 +35,21 @@ namespace Nodus
     }
   } // namespace
 
-  Newton::Newton(const NewtonParameters &parameters)
+  Newton::Newton(const NewtonParameters &parameters, const unsigned int patience)
       : parameters_(parameters)
+      , patience_(patience)
   {
+  }
+
+  double Newton::residual(const NewtonProblem::Norms &norms) const
+  {
+    return std::max(norms.force / parameters_.force_tolerance,
+                    std::max(norms.contact, norms.prescribed) / parameters_.contact_tolerance);
   }
 
   bool Newton::converged(const NewtonProblem::Norms &norms) const
   {
-    return norms.force <= parameters_.force_tolerance && norms.contact <= parameters_.contact_tolerance &&
-           norms.prescribed <= parameters_.contact_tolerance;
+    return norms.changes == 0 && residual(norms) <= 1.;
   }
 
   Newton::Report Newton::solve(NewtonProblem &problem, const Log &log) const
@@ -37,6 +58,8 @@ namespace Nodus
     BlockVector          correction;
     NewtonProblem::Norms norms = problem.assemble();
     log(0, norms, 0);
+    double       before = 0., forcing = largest_forcing, best = std::numeric_limits<double>::max();
+    unsigned int fewest = std::numeric_limits<unsigned int>::max(), idle = 0;
     while (!converged(norms))
     {
       if (!std::isfinite(norms.force + norms.contact))
@@ -44,7 +67,16 @@ namespace Nodus
       if (report.iterations == parameters_.maximum_iterations)
         fail("did not converge in " + std::to_string(report.iterations) + " iterations", norms);
 
-      const unsigned int krylov_iterations = problem.solve(correction);
+      const double now = residual(norms);
+      idle             = now < best || norms.changes < fewest ? 0 : idle + 1;
+      best             = std::min(best, now);
+      fewest           = std::min(fewest, norms.changes);
+      if (patience_ > 0 && idle >= patience_)
+        fail("stalled: no progress in " + std::to_string(idle) + " iterations", norms);
+
+      forcing = report.iterations == 0 ? largest_forcing : forcing_term(now, before, forcing);
+      before  = now;
+      const unsigned int krylov_iterations = problem.solve(correction, forcing);
       report.krylov_iterations += krylov_iterations;
       ++report.iterations;
       problem.advance(1., correction);
@@ -59,7 +91,7 @@ namespace Nodus
         try
         {
           trial  = problem.assemble();
-          accept = !search || trial.force <= std::max(norms.force, parameters_.force_tolerance);
+          accept = !search || trial.changes > 0 || trial.force <= std::max(norms.force, parameters_.force_tolerance);
         }
         catch (const SolverFailure &)
         {

@@ -101,14 +101,8 @@ namespace Nodus
       , m_ownership_(Ownership(system.layout->owned[1], system.layout->communicator).times(3))
       , owned_m_(m_ownership_.owned())
   {
-    const BlockLayout &layout = *system.layout;
-    const DoFIndex     n_u = layout.n_u, n_nodes = layout.n_slave_nodes;
-    const auto         to_m = [=](const DoFIndex flat)
-    {
-      const DoFIndex i = flat - n_u;
-      return i < n_nodes ? 3 * i : 3 * ((i - n_nodes) / 2) + 1 + (i - n_nodes) % 2;
-    };
-
+    const BlockLayout       &layout = *system.layout;
+    const DoFIndex           n_u    = layout.n_u;
     std::vector<MatrixEntry> uu, B, C;
     const TripletMatrix     &contact = system.contact;
     for (std::size_t k = 0; k < contact.value.size(); ++k)
@@ -131,6 +125,8 @@ namespace Nodus
     if (dealii::Utilities::MPI::max(uu_entries_.empty() ? 0 : 1, layout.communicator) != 0)
       C_uu_ = make_matrix(uu_entries_, u_map, u_map);
     equilibrate();
+    if (!system.symmetric)
+      make_variation();
     const double norms =
         bulk().norm_squared() + B_->NormFrobenius() + C_->NormFrobenius() + (C_uu_ ? C_uu_->NormFrobenius() : 0.);
     if (!std::isfinite(norms))
@@ -193,6 +189,36 @@ namespace Nodus
     C_->RightScale(scale);
   }
 
+  DoFIndex SaddlePointOperator::to_m(const DoFIndex flat) const
+  {
+    const DoFIndex i = flat - system_.layout->n_u, n_nodes = system_.layout->n_slave_nodes;
+    return i < n_nodes ? 3 * i : 3 * ((i - n_nodes) / 2) + 1 + (i - n_nodes) % 2;
+  }
+
+  void SaddlePointOperator::make_variation()
+  {
+    const DoFIndex           n_u = system_.layout->n_u;
+    std::vector<MatrixEntry> uu, um, mu, mm;
+    const TripletMatrix     &v = system_.variation;
+    for (std::size_t k = 0; k < v.value.size(); ++k)
+    {
+      const bool u_row = v.row[k] < n_u, u_column = v.column[k] < n_u;
+      (u_row ? (u_column ? uu : um) : (u_column ? mu : mm))
+          .push_back({u_row ? v.row[k] : to_m(v.row[k]), u_column ? v.column[k] : to_m(v.column[k]), v.value[k]});
+    }
+    const Epetra_Map   &u_map = bulk().map().row_map();
+    const Epetra_Map    m_map = owned_m_.make_trilinos_map(system_.layout->communicator, false);
+    const Epetra_Vector scale(View, m_map, scale_.data());
+    variation_.uu = make_matrix(u_ownership_.exchange(std::move(uu)), u_map, u_map);
+    variation_.um = make_matrix(u_ownership_.exchange(std::move(um)), u_map, m_map);
+    variation_.mu = make_matrix(m_ownership_.exchange(std::move(mu)), m_map, u_map);
+    variation_.mm = make_matrix(m_ownership_.exchange(std::move(mm)), m_map, m_map);
+    variation_.um->RightScale(scale);
+    variation_.mu->LeftScale(scale);
+    variation_.mm->LeftScale(scale);
+    variation_.mm->RightScale(scale);
+  }
+
   void SaddlePointOperator::apply_stiffness(const Epetra_MultiVector &u, Epetra_MultiVector &f) const
   {
     bulk().vmult(f[0], u[0]);
@@ -231,6 +257,16 @@ namespace Nodus
     B_->Multiply(false, u, g);
     C_->Multiply(false, m, m_part);
     g.Update(-1., m_part, 1.);
+    if (!variation_.uu)
+      return;
+    variation_.uu->Multiply(false, u, part);
+    f.Update(1., part, 1.);
+    variation_.um->Multiply(false, m, part);
+    f.Update(1., part, 1.);
+    variation_.mu->Multiply(false, u, m_part);
+    g.Update(1., m_part, 1.);
+    variation_.mm->Multiply(false, m, m_part);
+    g.Update(1., m_part, 1.);
   }
 
   BlockVector SaddlePointOperator::rhs() const

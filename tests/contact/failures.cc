@@ -62,7 +62,8 @@ int main(int argc, char **argv)
   check_words(
       "Newton without iterations left", outcome(newton), {"Newton did not converge in 1 iterations", "status pass 1"});
 
-  auto loop                         = p;
+  auto loop = p;
+  use_loops(loop);
   loop.geometry_loop.maximum_passes = 2;
   loop.geometry_loop.tolerance      = 1e-12;
   check_words(

@@ -33,6 +33,7 @@ int main(int argc, char **argv)
                            drive("top", region(1, {15}), 2, "-0.02*t")};
   p.contact_pairs       = {pair(region(1, {14}), region(2, {21}))};
   p.output.vtu_interval = 0;
+  use_loops(p); // the loops may cycle, not their merged iteration
 
   double nodal = 0.;
   for (const auto &[weights, test, name] :

@@ -93,6 +93,7 @@ namespace
   {
     print('\n' + name + ", maximum passes", loop.maximum_passes);
     print(name + ", tolerance", loop.tolerance);
+    print_choice(name + ", mode", loop.mode);
   }
 
   /// Keys that the reference lists and every_key.prm does not set.

@@ -33,7 +33,7 @@ namespace
       norms.contact = std::abs(x * y - 1);
       return norms;
     }
-    unsigned int solve(BlockVector &correction) override
+    unsigned int solve(BlockVector &correction, double) override
     {
       const double     r0 = 4 - x * x - y * y, r1 = 1 - x * y, det = 2 * x * x - 2 * y * y;
       dealii::IndexSet all(2);

@@ -2,6 +2,7 @@
 #define nodus_contact_averaged_jump_h
 
 #include <nodus/contact/contact_geometry.h>
+#include <nodus/contact/segments.h>
 
 #include <vector>
 
@@ -47,8 +48,21 @@ namespace Nodus
       return rows_[slave];
     }
 
+    /// A slave face of this rank: its points and the share of their jumps in the rows of its nodes.
+    struct Face
+    {
+      unsigned int             pair, face;
+      std::vector<MortarPoint> points;
+      std::vector<double>      psi; ///< per point and node of the face: weight times psi [area]
+    };
+    const std::vector<Face> &faces() const
+    {
+      return faces_;
+    }
+
   private:
-    std::vector<Row> rows_; ///< per slave node; area 0 where not covered or of another scheme
+    std::vector<Face> faces_;
+    std::vector<Row>  rows_; ///< per slave node; area 0 where not covered or of another scheme
   };
 } // namespace Nodus
 

@@ -49,7 +49,11 @@ namespace Nodus
 
     /// Fills the contact couplings, the multiplier scale and the multiplier blocks of the right-hand side of @p system;
     /// subtracts the contact forces from its displacement block (free components only). Collective.
-    ContactResidual assemble(const ContactState &state, LinearSystem &system) const;
+    /// @p linearise_threshold: the thresholds follow the current pressure (SurfaceWeights, site_pressure); the tangent
+    /// gets the derivative of the friction tractions with respect to lambda and is not symmetric any more. That of the
+    /// factors which scale the friction law rows is left out where a row has one factor (one node a point), and
+    /// sticking nodes have none there, because the caller keeps their mu lambda Lambda when the threshold moves.
+    ContactResidual assemble(const ContactState &state, LinearSystem &system, bool linearise_threshold = false) const;
 
     /// Adds the contact force residual G^T R_jump to all components, prescribed ones too. Collective (compresses).
     void add_forces(const ContactResidual &residual, Vector &force) const;
@@ -62,6 +66,9 @@ namespace Nodus
     std::array<double, 2> slip(const ContactState &state, unsigned int site) const;
 
   private:
+    /// d(mu lambda_s)/d lambda_k of every site with friction.
+    std::vector<std::vector<std::pair<unsigned int, double>>> threshold_derivative() const;
+
     const ContactSurfaces &surfaces_;
     const Pairing         &pairing_;
     const JumpOperator    &jump_;

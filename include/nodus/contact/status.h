@@ -79,6 +79,10 @@ namespace Nodus
              : friction(site) && stick(site) ? ContactStatus::stick
                                              : ContactStatus::slip;
     }
+    double friction_coefficient(const unsigned int site) const
+    {
+      return pairs_[surfaces_.pair(site)].friction_coefficient;
+    }
     /// rho_n = h_n of the site's pair [pressure/length].
     double normal_augmentation(const unsigned int site) const
     {
@@ -113,19 +117,21 @@ namespace Nodus
       return has_friction_;
     }
 
-    /// Statuses forget which vectors this loop has visited.
-    void begin_loop();
+    /// Statuses forget which vectors this loop has visited. @p merged: updates follow single Newton iterations.
+    void begin_loop(bool merged = false);
     struct Update
     {
       unsigned int              changes = 0;
       unsigned int              period  = 0;     ///< > 0: this status vector was visited that many passes ago
-      bool                      cycles  = false; ///< visited again although sites change one at a time
+      bool                      cycles  = false; ///< visited again although sites change one at a time, or too often
       std::vector<unsigned int> sites;           ///< that changed
     };
     /// Tests every site and changes those that contradict their status (eq. 2, 3, 7, 8); begin_loop() comes first. Once
     /// a status vector comes back, only the contradicting site of lowest number changes in a pass: Murty's least-index
-    /// rule, which is finite for frictionless contact at frozen geometry where changing all at once may cycle.
-    Update update(const StatusInput &input);
+    /// rule, which is finite for frictionless contact at frozen geometry where changing all at once may cycle. A merged
+    /// loop has no such rule and cycles when vectors come back time and again.
+    /// @p closing_only: sites that penetrate close, nothing else changes (an iterate whose pressures mean nothing yet).
+    Update update(const StatusInput &input, bool closing_only = false);
 
     /// Empties the ledger, at the start of an increment.
     void                begin_increment();
@@ -150,6 +156,7 @@ namespace Nodus
       std::vector<std::array<double, 2>> slip;
     };
     void update_floor();
+    void note_friction();
 
     const std::vector<ContactPairParameters> &pairs_;
     const ContactSurfaces                    &surfaces_;
@@ -159,8 +166,10 @@ namespace Nodus
     double                                    threshold_floor_ = 0.;
     std::vector<StatusLedger>                 ledger_;
     std::vector<std::vector<char>>            visited_;
-    std::vector<char>                         opened_; ///< in this status loop
-    bool                                      one_at_a_time_ = false;
+    std::vector<char>                         opened_;       ///< in this status loop
+    std::vector<char>                         had_friction_; ///< at the last test: the iterate knows of friction there
+    bool                                      one_at_a_time_ = false, merged_ = false;
+    unsigned int                              returns_ = 0; ///< to a visited vector, in this loop
   };
 } // namespace Nodus
 

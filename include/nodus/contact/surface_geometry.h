@@ -9,6 +9,15 @@
 
 namespace Nodus
 {
+  /// Derivative of a vector with respect to the position of a surface node.
+  struct NodeDerivative
+  {
+    unsigned int           node; ///< index into ContactSurfaces::nodes()
+    dealii::Tensor<2, dim> value;
+  };
+  /// Adds to the derivative with respect to @p node.
+  void add(std::vector<NodeDerivative> &derivative, unsigned int node, const dealii::Tensor<2, dim> &value);
+
   /// Shape of the faces of one side at given positions, with normals averaged at the nodes.
   ///
   /// Faces of degree 1 may be smoothed: the middle of each edge moves onto the circular arc that meets the averaged
@@ -62,15 +71,38 @@ namespace Nodus
       return nodal_normals_[f * faces_[f].nodes.size() + n];
     }
 
-  private:
-    const std::vector<SurfaceFace> &faces_;
-    const std::vector<Point>       &positions_;
-    unsigned int                    degree_, shape_degree_;
-    std::vector<Vector3>            nodal_normals_; ///< per face and node
-    std::vector<Point>              points_;        ///< per face, (shape_degree + 1)^2
+    bool smoothed() const
+    {
+      return shape_degree_ != degree_;
+    }
+    /// The offset is the sum over the four edges of a function of (xi, eta) times the offset of the edge's middle, and
+    /// its derivative with respect to the nodes likewise.
+    static double               edge_function(unsigned int edge, double xi, double eta);
+    std::vector<NodeDerivative> edge_derivative(unsigned int f, unsigned int edge) const;
 
-    void average_normals(const std::vector<std::array<bool, dim>> &fixed);
-    void smooth();
+    /// Add to @p derivative that of the normals with respect to the nodes, at fixed local coordinates. That of the face
+    /// normal leaves the smoothing out.
+    void normal_derivative(unsigned int f, double xi, double eta, std::vector<NodeDerivative> &derivative) const;
+    void
+    averaged_normal_derivative(unsigned int f, double xi, double eta, std::vector<NodeDerivative> &derivative) const;
+    void nodal_normal_derivative(unsigned int f, unsigned int n, std::vector<NodeDerivative> &derivative) const;
+
+  private:
+    const std::vector<SurfaceFace>           &faces_;
+    const std::vector<Point>                 &positions_;
+    const std::vector<std::array<bool, dim>> &fixed_; ///< components of each node
+    unsigned int                              degree_, shape_degree_;
+    std::vector<Vector3>                      unit_, nodal_normals_; ///< per face and node: of the face, averaged
+    /// Where each surface node occurs: face * nodes per face + n, from start_[node] on.
+    std::vector<unsigned int> start_, occurrence_;
+    std::vector<FaceShape>    node_shapes_; ///< of the displacement at the nodes of a face
+    std::vector<Point>        points_;      ///< per face, (shape_degree + 1)^2
+
+    void average_normals();
+    /// Sum of the weighted normals of the faces around node n that belong to one smooth surface with face f.
+    Vector3 sum_of_normals(unsigned int f, unsigned int n) const;
+    bool    on_symmetry_plane(unsigned int node, const Vector3 &normal) const;
+    void    smooth();
   };
 } // namespace Nodus
 

@@ -52,6 +52,7 @@ namespace Nodus
   struct IterationCounts
   {
     unsigned int geometry = 0, threshold = 0, status = 0, newton = 0, krylov = 0;
+    unsigned int fallbacks = 0; ///< merged iterations that stalled and were started again with loops
   };
 } // namespace Nodus
 

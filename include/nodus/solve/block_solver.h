@@ -11,7 +11,7 @@ namespace Nodus
   public:
     BlockSolver(const LinearSolverParameters &parameters, const RigidBodyData &rigid_body_data);
 
-    Report solve(const LinearSystem &system, BlockVector &solution) override;
+    Report solve(const LinearSystem &system, BlockVector &solution, double relative_tolerance = 0.) override;
 
   private:
     const LinearSolverParameters parameters_;

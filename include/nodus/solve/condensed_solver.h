@@ -13,19 +13,26 @@ namespace Nodus
   class Condensation;
 
   /// Conjugate gradients with multigrid on the displacements that are left when condensation.h has eliminated the
-  /// multipliers. The hierarchy is kept over several systems while it pays. Systems that cannot be condensed go to the
-  /// block solver.
+  /// multipliers; a system with a variation needs FGMRES on all unknowns, with condensation and multigrid as
+  /// preconditioner. The hierarchy is kept over several systems while it pays. Systems that cannot be condensed go to
+  /// the block solver.
   class CondensedSolver : public LinearSolver
   {
   public:
     CondensedSolver(const LinearSolverParameters &parameters, const RigidBodyData &rigid_body_data);
 
-    Report solve(const LinearSystem &system, BlockVector &solution) override;
+    Report solve(const LinearSystem &system, BlockVector &solution, double relative_tolerance = 0.) override;
 
   private:
-    void         make_multigrid(const LinearSystem &system, const Condensation &condensation);
-    bool         hierarchy_fits(const std::vector<char> &signature, MPI_Comm communicator) const;
-    unsigned int iterate(const Condensation &condensation, const Vector &rhs, double tolerance, Vector &y) const;
+    void make_multigrid(const LinearSystem &system, const Condensation &condensation);
+    bool hierarchy_fits(const std::vector<char> &signature, MPI_Comm communicator) const;
+    /// Both return the iterations; @p x starts from zero.
+    unsigned int
+    iterate(const SaddlePointOperator &matrix, Condensation &condensation, double tolerance, BlockVector &x) const;
+    unsigned int
+    conjugate_gradients(const Condensation &condensation, const Vector &rhs, double tolerance, Vector &y) const;
+    unsigned int
+    fgmres(const SaddlePointOperator &matrix, Condensation &condensation, double tolerance, BlockVector &x) const;
 
     const LinearSolverParameters     parameters_;
     const RigidBodyData              rigid_body_data_;
@@ -33,7 +40,7 @@ namespace Nodus
     std::unique_ptr<CorrectedMatrix> matrix_;
     std::unique_ptr<Multigrid>       multigrid_;
     std::vector<char>                signature_; ///< of the system that the hierarchy was made for
-    unsigned int                     first_iterations_ = 0, last_iterations_ = 0; ///< with this hierarchy
+    double                           first_iterations_ = 0., last_iterations_ = 0.; ///< with this hierarchy, per digit
   };
 } // namespace Nodus
 

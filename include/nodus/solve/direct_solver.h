@@ -8,8 +8,9 @@
 
 namespace Nodus
 {
-  /// Sparse symmetric indefinite factorisation of the whole system by MUMPS, the upper triangle distributed as it was
-  /// assembled. The symbolic analysis is kept while the positions of the entries do not change.
+  /// Sparse factorisation of the whole system by MUMPS, distributed as it was assembled: of the upper triangle where
+  /// the system is symmetric (indefinite). The symbolic analysis is kept while the positions of the entries do not
+  /// change. Negative pivots are counted in symmetric systems only.
   class DirectSolver : public LinearSolver
   {
   public:
@@ -17,7 +18,7 @@ namespace Nodus
     explicit DirectSolver(const BlockLayout &layout);
     ~DirectSolver() override;
 
-    Report solve(const LinearSystem &system, BlockVector &solution) override;
+    Report solve(const LinearSystem &system, BlockVector &solution, double relative_tolerance = 0.) override;
 
   private:
     struct Instance;
@@ -36,6 +37,7 @@ namespace Nodus
 
     MPI_Comm                  communicator_;
     int                       size_; ///< number of unknowns
+    bool                      symmetric_;
     std::unique_ptr<Instance> instance_;
     std::vector<int>          row_, column_; ///< of this rank's entries, starting at 1; MUMPS points here
     std::vector<double>       value_;

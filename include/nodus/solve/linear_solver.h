@@ -10,7 +10,7 @@
 
 namespace Nodus
 {
-  /// Solves the symmetric saddle-point systems of the contact Newton. Knows no physics.
+  /// Solves the saddle-point systems of the contact Newton. Knows no physics.
   class LinearSolver
   {
   public:
@@ -28,7 +28,8 @@ namespace Nodus
     /// @p solution is reinitialised to the layout of the right-hand side. The result is the same on every rank count
     /// to the tolerance. @throws SolverFailure on every rank when the system cannot be solved; a singular system is
     /// solved with null pivots reported (direct), the caller decides.
-    virtual Report solve(const LinearSystem &system, BlockVector &solution) = 0;
+    /// An iterative solver may stop at @p relative_tolerance, or at its own tolerance where that is larger.
+    virtual Report solve(const LinearSystem &system, BlockVector &solution, double relative_tolerance = 0.) = 0;
   };
 
   /// Coordinates of the degrees of freedom for the rigid-body modes, and the constrained ones (zero in the modes).

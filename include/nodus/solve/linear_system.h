@@ -62,19 +62,23 @@ namespace Nodus
     }
   };
 
-  /// One Newton correction: (bulk + contact) delta = rhs, symmetric indefinite.
+  /// One Newton correction: (bulk + contact + variation) delta = rhs, indefinite. Without the variation it is
   ///
   ///     [ bulk + C_uu   B^T ] [du]   [ rhs_u ]
   ///     [ B             -C  ] [dm] = [ rhs_m ],   m = (lambda, Lambda), C >= 0 and coupled only
   ///                                               within a slave node unless the weights are `consistent`
+  ///
+  /// and symmetric. The variation is what moving geometry and thresholds add, unsymmetric: the derivative of the
+  /// friction tractions and laws with respect to lambda, and that of forces and gaps by normals and projections.
   ///
   /// Prescribed displacements are eliminated: their rows hold a positive diagonal only and no contact coupling.
   struct LinearSystem
   {
     const BlockLayout *layout;
     NodeMatrix         bulk;
-    TripletMatrix      contact;
+    TripletMatrix      contact, variation;
     BlockVector        rhs;
+    bool               symmetric = true; ///< there is no variation; the same on every rank
     /// Per owned slave node, per multiplier: scale s > 0 for symmetric row and column equilibration
     /// (multiplier = s x scaled multiplier); friction rows carry mu lambda_s and get its inverse. Size 3 x owned slave
     /// nodes: lambda, Lambda_1, Lambda_2 of the first owned node, and so on.

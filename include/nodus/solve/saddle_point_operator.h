@@ -52,7 +52,8 @@ namespace Nodus
   ///     [ bulk + C_uu   B^T ]
   ///     [ B             -C  ]
   ///
-  /// The result does not depend on LinearSystem::multiplier_scale, which the scaling supersedes.
+  /// and, added to it by vmult(), the variation. The result does not depend on LinearSystem::multiplier_scale, which
+  /// the scaling supersedes.
   class SaddlePointOperator
   {
   public:
@@ -67,6 +68,10 @@ namespace Nodus
     /// Writes @p x in the unknowns of the system.
     void to_solution(const BlockVector &x, BlockVector &solution) const;
 
+    bool symmetric() const
+    {
+      return system_.symmetric;
+    }
     /// 2-norm of a residual in the units of the system.
     double unscaled_norm(const BlockVector &residual) const;
 
@@ -107,7 +112,9 @@ namespace Nodus
     }
 
   private:
-    void equilibrate();
+    DoFIndex to_m(DoFIndex flat) const;
+    void     equilibrate();
+    void     make_variation();
 
     const LinearSystem               &system_;
     const Ownership                   u_ownership_, m_ownership_;
@@ -116,6 +123,10 @@ namespace Nodus
     std::unique_ptr<Epetra_CrsMatrix> B_, C_, C_uu_; ///< C_uu is null when it has no entries
     std::vector<double>               scale_;        ///< of owned multipliers: multiplier = scale x unknown
     std::vector<double>               stiffness_;
+    struct
+    {
+      std::unique_ptr<Epetra_CrsMatrix> uu, um, mu, mm;
+    } variation_; ///< null in a symmetric system
   };
 
   /// Matrix of the sorted @p entries of owned rows, with the given row and column maps. Collective.

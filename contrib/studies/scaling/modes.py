@@ -1,0 +1,98 @@
+#!/usr/bin/python3
+"""Loops around Newton against loops merged into Newton: iterations, CPU and answers of the cases of prm/.
+
+Writes modes.md. Cases may be named on the command line; without names all run.
+"""
+
+import os
+import sys
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+import common  # noqa: E402
+
+# Merged into Newton: geometry, threshold, status.
+MODES = {
+    "three loops": "",
+    "status": "s",
+    "geometry": "g",
+    "threshold, status": "ts",
+    "all": "gts",
+}
+
+# Case and further keys. Tolerances of the loops as shipped: answers agree to those.
+CASES = {
+    "plate_on_rigid_plane": {},
+    "plate_on_rigid_plane, tight loops": {"Threshold loop/Tolerance": "1e-7", "Geometry loop/Tolerance": "1e-6"},
+    "cantilevers": {},
+    "sliding_blocks": {},
+    "unsticking": {},
+    "inclined_interface": {},
+    "ring": {},
+    "patch": {},
+    "hertz, one increment": {"Load stepping/Increments": "1"},
+    "hertz, one increment, direct": {"Load stepping/Increments": "1", "Linear solver/Type": "direct"},
+}
+FORCES = [f"slave force {axis}" for axis in "xyz"]
+
+
+def measure(case, mode):
+    name = case.split(",")[0]
+    sets = dict(CASES[case])
+    for loop, letter in (("Geometry", "g"), ("Threshold", "t"), ("Status", "s")):
+        sets[f"{loop} loop/Mode"] = "newton" if letter in MODES[mode] else "fixed point"
+    sets["Output/VTU interval"] = "0"
+    prm = os.path.join(common.ROOT, "prm", name + ".prm")
+    run = common.run(prm, f"modes_{case}_{mode}".replace(", ", "_").replace(" ", "_"), sets)
+    # one row per increment and pair; the counts are those of the increment
+    rows = {row["increment"]: row for row in run.contact()}.values() if run.converged else []
+    return run, list(rows)
+
+
+def main():
+    cases = sys.argv[1:] or list(CASES)
+    table = []
+    for case in cases:
+        reference = None
+        for mode in MODES:
+            run, rows = measure(case, mode)
+            if not run.converged:
+                table.append([case, mode, "stops", *[""] * 6])
+                continue
+            newton = [int(row["Newton iterations"]) for row in rows]
+            forces = np.array([[row[key] for key in FORCES] + [row["maximum pressure"]] for row in rows])
+            if reference is None:
+                reference = forces
+            scale = np.abs(reference).max(axis=0)
+            scale[:3] = scale[:3].max()
+            timing = run.timing()
+            table.append([
+                case,
+                mode,
+                f"{sum(newton)}",
+                f"{sum(newton) / len(newton):.1f}",
+                f"{max(newton)}",
+                f"{sum(int(row['Krylov iterations']) for row in rows)}",
+                f"{sum(int(row['fallbacks']) for row in rows)}",
+                f"{run.cpu:.1f} ({timing.get('linear solver', 0):.1f})",
+                f"{np.max(np.abs(forces - reference) / scale):.1e}",
+            ])  # fmt: skip
+    header = ["case", "merged into Newton", "Newton iterations", "per increment", "most", "Krylov", "fallbacks",
+              "CPU s (linear solver)", "difference"]  # fmt: skip
+    path = os.path.join(HERE, "modes.md")
+    text = common.table(path, header, table)
+    with open(path, "w") as file:
+        file.write(
+            "## Three nested loops against loops merged into Newton\n\n"
+            "Each of the geometry, threshold and status loops is a fixed point around Newton or part of each Newton iteration "
+            "(`Mode`). `difference`: of contact forces and largest pressures over all increments from those of the three "
+            "loops, relative to their largest; the loops stop at their tolerances (geometry 1e-2, threshold 1e-4) where "
+            "merged iterations go on to those of Newton (1e-8). `fallbacks`: increments in which the merged iteration stalled "
+            "and was done again with three loops; their iterations count. One core, CPU of the whole run.\n\n" + text
+        )
+
+
+if __name__ == "__main__":
+    main()

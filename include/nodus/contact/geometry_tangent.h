@@ -1,0 +1,93 @@
+#ifndef nodus_contact_geometry_tangent_h
+#define nodus_contact_geometry_tangent_h
+
+#include <nodus/contact/contact_assembler.h>
+
+#include <array>
+#include <vector>
+
+namespace Nodus
+{
+  /// What the contact terms gain in the tangent when pairing and frames follow the surfaces: the jump of a site is
+  /// sum_q c_q (x_slave(q) - x_master(xi_q)), and its normal n depends on the master (or slave) nodes and on xi.
+  ///
+  /// - contact forces: G^T delta r, where r (work conjugate to the jump) turns with n, and delta G^T r, where the
+  ///   projections slide, delta xi^alpha = x^alpha . delta(x_slave - x_master): exact where the surfaces touch;
+  /// - gaps: delta n . [[x]] - sum_q c_q n . x_,alpha delta xi^alpha (zero where n is the normal of the surface
+  ///   itself), and the change of the offsets of smoothed surfaces.
+  ///
+  /// Left out: the variation of areas and of the weights c_q (nodal forces do not depend on the areas, see
+  /// pair_surfaces), of slips and of normals averaged on the slave side, and the spin of the tangents about n.
+  class GeometryTangent
+  {
+  public:
+    GeometryTangent(const std::vector<ContactPairParameters> &pairs,
+                    const ContactSurfaces                    &surfaces,
+                    const ContactGeometry                    &geometry,
+                    const AveragedJump                       &averaged,
+                    const Pairing                            &pairing,
+                    const JumpOperator                       &jump,
+                    const SurfaceWeights                     &weights,
+                    const Status                             &status);
+
+    /// Adds to the contact couplings of @p system, after ContactAssembler::assemble returned @p residual. @p symmetric:
+    /// only the symmetric part of the force terms, for solvers that need it. Collective.
+    void add(const ContactState &state, const ContactResidual &residual, bool symmetric, LinearSystem &system) const;
+
+  private:
+    using Matrix3 = dealii::Tensor<2, dim>;
+    using Entry   = JumpOperator::Entry;
+
+    /// A projected point: where it moves and how xi follows.
+    struct ProjectedPoint
+    {
+      std::vector<Entry> motion;   ///< of x_slave - x_master at fixed xi
+      std::vector<Entry> shape[2]; ///< derivatives of the master shape functions
+      Vector3            dual[2];  ///< x^alpha, zero where xi^alpha is held at an edge of the face
+      Vector3            tangent[2];
+      std::vector<std::pair<unsigned int, double>> sites; ///< and c_q
+    };
+    ProjectedPoint              slave_point(unsigned int site) const;
+    void                        project(unsigned int pair, const Projection &master, ProjectedPoint &point) const;
+    std::vector<NodeDerivative> normal_derivative(unsigned int site) const;
+
+    /// Couplings of a few nodes, dense: blocks (row node, column node) of the force terms, gap rows (slave, column
+    /// node).
+    struct Blocks
+    {
+      std::vector<unsigned int> nodes, slaves;
+      unsigned int              stride = 0;
+      std::vector<Matrix3>      force; ///< row * stride + column
+      std::vector<Vector3>      gap;   ///< slave * stride + column
+      /// What the middles of the four edges of a face add to the gap row of a slave: side 0 slave or 1 master.
+      struct Edges
+      {
+        unsigned int           slave, side, face;
+        std::array<Vector3, 4> normal;
+      };
+      std::vector<Edges> edges;
+
+      void         clear();
+      unsigned int node(unsigned int n);
+      unsigned int slave(unsigned int k);
+    };
+    /// The offset at (xi, eta) of a face of a side is part of the jump at @p point.
+    void add_offset(
+        unsigned int side, unsigned int face, double xi, double eta, const ProjectedPoint &point, Blocks &blocks) const;
+    void finish_offsets(unsigned int pair, Blocks &blocks) const;
+    void add_point(const ProjectedPoint &point, const ContactResidual &residual, Blocks &blocks) const;
+    void write(const ContactState &state, const Blocks &blocks, bool symmetric, LinearSystem &system) const;
+
+    const std::vector<ContactPairParameters>                 &pairs_;
+    const ContactSurfaces                                    &surfaces_;
+    const ContactGeometry                                    &geometry_;
+    const AveragedJump                                       &averaged_;
+    const Pairing                                            &pairing_;
+    const JumpOperator                                       &jump_;
+    const SurfaceWeights                                     &weights_;
+    const Status                                             &status_;
+    std::vector<std::vector<std::pair<unsigned int, double>>> gap_rows_; ///< per site: slave, d R_lambda / d d_n
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,389 @@
+#include <nodus/contact/geometry_tangent.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+
+namespace Nodus
+{
+  namespace
+  {
+    constexpr unsigned int no_site = dealii::numbers::invalid_unsigned_int;
+
+    void add_shape(const SurfaceFace                &face,
+                   const std::array<double, 9>      &value,
+                   const double                      sign,
+                   std::vector<JumpOperator::Entry> &entries)
+    {
+      for (unsigned int n = 0; n < face.nodes.size(); ++n)
+        if (std::abs(value[n]) > 1e-15)
+          entries.push_back({face.nodes[n], sign * value[n]});
+    }
+  } // namespace
+
+  GeometryTangent::GeometryTangent(const std::vector<ContactPairParameters> &pairs,
+                                   const ContactSurfaces                    &surfaces,
+                                   const ContactGeometry                    &geometry,
+                                   const AveragedJump                       &averaged,
+                                   const Pairing                            &pairing,
+                                   const JumpOperator                       &jump,
+                                   const SurfaceWeights                     &weights,
+                                   const Status                             &status)
+      : pairs_(pairs)
+      , surfaces_(surfaces)
+      , geometry_(geometry)
+      , averaged_(averaged)
+      , pairing_(pairing)
+      , jump_(jump)
+      , weights_(weights)
+      , status_(status)
+      , gap_rows_(surfaces.n_sites())
+  {
+    for (const ContactPoint &point : weights_.points())
+      for (unsigned int a = 0; a < point.slaves.size(); ++a)
+        if (point.site != no_site)
+        {
+          if (status_.contact(point.site))
+            gap_rows_[point.site].emplace_back(point.slaves[a], -point.weight * point.shape[a]);
+        }
+        else if (status_.contact(point.slaves[a]))
+          for (unsigned int b = 0; b < point.slaves.size(); ++b)
+            if (status_.contact(point.slaves[b]))
+              gap_rows_[point.slaves[b]].emplace_back(point.slaves[a], -point.weight * point.shape[a] * point.shape[b]);
+  }
+
+  GeometryTangent::ProjectedPoint GeometryTangent::slave_point(const unsigned int site) const
+  {
+    ProjectedPoint point;
+    if (surfaces_.is_point(site))
+    {
+      const SlavePoint &p = surfaces_.point(site);
+      add_shape(
+          surfaces_.slave_faces(p.pair)[p.face], FaceShape(surfaces_.degree(), p.xi, p.eta).value, 1., point.motion);
+    }
+    else
+      point.motion.push_back({surfaces_.slave_nodes()[site].node, 1.});
+    return point;
+  }
+
+  void GeometryTangent::project(const unsigned int pair, const Projection &master, ProjectedPoint &point) const
+  {
+    const SurfaceGeometry &surface = geometry_.master[pair];
+    const SurfaceFace     &face    = surface.face(master.face);
+    const FaceShape        shape(surfaces_.degree(), master.xi, master.eta);
+    add_shape(face, shape.value, -1., point.motion);
+    add_shape(face, shape.d_xi, 1., point.shape[0]);
+    add_shape(face, shape.d_eta, 1., point.shape[1]);
+
+    const FaceGeometry x = surface.at(master.face, master.xi, master.eta);
+    point.tangent[0]     = x.d_xi;
+    point.tangent[1]     = x.d_eta;
+    const bool   held[2] = {master.xi <= 0. || master.xi >= 1., master.eta <= 0. || master.eta >= 1.};
+    const double a = x.d_xi * x.d_xi, b = x.d_xi * x.d_eta, c = x.d_eta * x.d_eta, det = a * c - b * b;
+    if (!held[0])
+      point.dual[0] = held[1] ? x.d_xi / a : (c * x.d_xi - b * x.d_eta) / det;
+    if (!held[1])
+      point.dual[1] = held[0] ? x.d_eta / c : (a * x.d_eta - b * x.d_xi) / det;
+  }
+
+  std::vector<NodeDerivative> GeometryTangent::normal_derivative(const unsigned int site) const
+  {
+    using Normal = ContactPairParameters::Normal;
+    std::vector<NodeDerivative> derivative;
+    const unsigned int          p      = surfaces_.pair(site);
+    const Projection           &master = pairing_[site].master;
+    if (!master.found() || pairs_[p].normal == Normal::slave)
+      return derivative;
+
+    const SurfaceGeometry &surface   = geometry_.master[p];
+    const bool             averaging = pairs_[p].normal == Normal::averaged;
+    if (averaging)
+      surface.averaged_normal_derivative(master.face, master.xi, master.eta, derivative);
+    else
+      surface.normal_derivative(master.face, master.xi, master.eta, derivative);
+    for (NodeDerivative &d : derivative)
+      d.value = -d.value;
+
+    ProjectedPoint point = slave_point(site);
+    project(p, master, point);
+    for (unsigned int alpha = 0; alpha < 2; ++alpha)
+    {
+      constexpr double step = 1e-5; // the normal is smooth in the face
+      const double     dx = alpha == 0 ? step : 0., dy = alpha == 1 ? step : 0.;
+      const auto       normal = [&](const double sign)
+      {
+        const double xi = master.xi + sign * dx, eta = master.eta + sign * dy;
+        return averaging ? surface.averaged_normal(master.face, xi, eta) : surface.normal(master.face, xi, eta);
+      };
+      const Vector3 slope = (normal(-1.) - normal(1.)) / (2. * step);
+      for (const Entry &e : point.motion)
+        Nodus::add(derivative, e.node, e.weight * dealii::outer_product(slope, point.dual[alpha]));
+    }
+    return derivative;
+  }
+
+  void GeometryTangent::Blocks::clear()
+  {
+    nodes.clear();
+    slaves.clear();
+    edges.clear();
+    force.assign(force.size(), Matrix3());
+    gap.clear();
+  }
+
+  unsigned int GeometryTangent::Blocks::node(const unsigned int n)
+  {
+    const unsigned int i = std::find(nodes.begin(), nodes.end(), n) - nodes.begin();
+    if (i < nodes.size())
+      return i;
+    nodes.push_back(n);
+    if (nodes.size() > stride)
+    {
+      const unsigned int   before = stride;
+      std::vector<Matrix3> old_force(std::move(force));
+      std::vector<Vector3> old_gap(std::move(gap));
+      stride = std::max(32u, 2 * stride);
+      force.assign(stride * stride, Matrix3());
+      gap.assign(slaves.size() * stride, Vector3());
+      for (unsigned int row = 0; row < before; ++row)
+        std::copy_n(old_force.begin() + row * before, before, force.begin() + row * stride);
+      for (unsigned int row = 0; row < slaves.size(); ++row)
+        std::copy_n(old_gap.begin() + row * before, before, gap.begin() + row * stride);
+    }
+    return i;
+  }
+
+  unsigned int GeometryTangent::Blocks::slave(const unsigned int k)
+  {
+    const unsigned int i = std::find(slaves.begin(), slaves.end(), k) - slaves.begin();
+    if (i == slaves.size())
+    {
+      slaves.push_back(k);
+      gap.resize(slaves.size() * stride);
+    }
+    return i;
+  }
+
+  void GeometryTangent::add_point(const ProjectedPoint &point, const ContactResidual &residual, Blocks &blocks) const
+  {
+    Vector3 force;
+    for (const auto &[site, weight] : point.sites)
+      force += weight * residual.jump[site];
+    unsigned int column[2 * 9];
+    for (unsigned int e = 0; e < point.motion.size(); ++e)
+      column[e] = blocks.node(point.motion[e].node);
+    for (unsigned int alpha = 0; alpha < 2; ++alpha)
+    {
+      if (point.dual[alpha] == Vector3())
+        continue;
+      const Matrix3 slide = dealii::outer_product(force, point.dual[alpha]);
+      for (const Entry &row : point.shape[alpha])
+      {
+        const unsigned int first = blocks.node(row.node) * blocks.stride;
+        for (unsigned int e = 0; e < point.motion.size(); ++e)
+          blocks.force[first + column[e]] -= row.weight * point.motion[e].weight * slide;
+      }
+      for (const auto &[site, weight] : point.sites)
+        for (const auto &[k, coefficient] : gap_rows_[site])
+        {
+          const unsigned int first = blocks.slave(k) * blocks.stride;
+          const double       slope = -coefficient * weight * (pairing_[site].normal * point.tangent[alpha]);
+          for (unsigned int e = 0; e < point.motion.size(); ++e)
+            blocks.gap[first + column[e]] += slope * point.motion[e].weight * point.dual[alpha];
+        }
+    }
+  }
+
+  void GeometryTangent::add_offset(const unsigned int    side,
+                                   const unsigned int    face,
+                                   const double          xi,
+                                   const double          eta,
+                                   const ProjectedPoint &point,
+                                   Blocks               &blocks) const
+  {
+    const unsigned int pair = surfaces_.pair(point.sites[0].first);
+    if (!(side == 0 ? geometry_.slave : geometry_.master)[pair].smoothed())
+      return;
+    std::array<double, 4> value;
+    for (unsigned int edge = 0; edge < 4; ++edge)
+      value[edge] = (side == 0 ? 1. : -1.) * SurfaceGeometry::edge_function(edge, xi, eta);
+    for (const auto &[site, weight] : point.sites)
+      for (const auto &[k, coefficient] : gap_rows_[site])
+      {
+        auto at = std::find_if(blocks.edges.begin(),
+                               blocks.edges.end(),
+                               [&, slave = k](const auto &e)
+                               { return e.slave == slave && e.side == side && e.face == face; });
+        if (at == blocks.edges.end())
+          at = blocks.edges.insert(at, {k, side, face, {}});
+        for (unsigned int edge = 0; edge < 4; ++edge)
+          at->normal[edge] += coefficient * weight * value[edge] * pairing_[site].normal;
+      }
+  }
+
+  void GeometryTangent::finish_offsets(const unsigned int pair, Blocks &blocks) const
+  {
+    for (unsigned int i = 0; i < blocks.edges.size(); ++i)
+    {
+      const unsigned int side = blocks.edges[i].side, face = blocks.edges[i].face;
+      const auto         same = [&](const unsigned int j)
+      { return blocks.edges[j].side == side && blocks.edges[j].face == face; };
+      bool done = false;
+      for (unsigned int j = 0; j < i; ++j)
+        done = done || same(j);
+      for (unsigned int edge = 0; edge < 4 && !done; ++edge)
+      {
+        const auto derivative = (side == 0 ? geometry_.slave : geometry_.master)[pair].edge_derivative(face, edge);
+        for (unsigned int j = i; j < blocks.edges.size(); ++j)
+          if (same(j))
+            for (const NodeDerivative &d : derivative)
+            {
+              const unsigned int column = blocks.node(d.node), row = blocks.slave(blocks.edges[j].slave);
+              blocks.gap[row * blocks.stride + column] += blocks.edges[j].normal[edge] * d.value;
+            }
+      }
+    }
+    blocks.edges.clear();
+  }
+
+  void GeometryTangent::add(const ContactState    &state,
+                            const ContactResidual &residual,
+                            const bool             symmetric,
+                            LinearSystem          &system) const
+  {
+    const unsigned int rank   = dealii::Utilities::MPI::this_mpi_process(surfaces_.layout().communicator);
+    const auto         active = [&](const unsigned int site) { return residual.jump[site].norm_square() > 0.; };
+
+    Blocks blocks;
+    for (const AveragedJump::Face &face : averaged_.faces())
+    {
+      blocks.clear();
+      const auto        &nodes = surfaces_.slave_faces(face.pair)[face.face].nodes;
+      const unsigned int n     = nodes.size();
+      for (unsigned int q = 0; q < face.points.size(); ++q)
+      {
+        ProjectedPoint point;
+        for (unsigned int a = 0; a < n; ++a)
+          if (const unsigned int k = surfaces_.slave_number(nodes[a]); averaged_.covered(k) && active(k))
+            point.sites.emplace_back(k, face.psi[n * q + a] / averaged_.row(k).area);
+        if (point.sites.empty())
+          continue;
+        const MortarPoint &p = face.points[q];
+        add_shape(surfaces_.slave_faces(face.pair)[face.face],
+                  FaceShape(surfaces_.degree(), p.xi, p.eta).value,
+                  1.,
+                  point.motion);
+        project(face.pair, p.master, point);
+        add_point(point, residual, blocks);
+        if (!symmetric)
+        {
+          add_offset(0, face.face, p.xi, p.eta, point, blocks);
+          add_offset(1, p.master.face, p.master.xi, p.master.eta, point, blocks);
+        }
+      }
+      finish_offsets(face.pair, blocks);
+      write(state, blocks, symmetric, system);
+    }
+
+    for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
+    {
+      if (surfaces_.site_owner(s) != rank || !active(s) || !pairing_[s].master.found())
+        continue;
+      blocks.clear();
+      const unsigned int p = surfaces_.pair(s);
+      if (pairs_[p].scheme != ContactPairParameters::Scheme::averaged)
+      {
+        ProjectedPoint point = slave_point(s);
+        project(p, pairing_[s].master, point);
+        point.sites.emplace_back(s, 1.);
+        add_point(point, residual, blocks);
+        const Projection &master = pairing_[s].master;
+        if (!symmetric)
+        {
+          if (surfaces_.is_point(s))
+            add_offset(0, surfaces_.point(s).face, surfaces_.point(s).xi, surfaces_.point(s).eta, point, blocks);
+          add_offset(1, master.face, master.xi, master.eta, point, blocks);
+          finish_offsets(p, blocks);
+        }
+      }
+      // r turns with the normal: delta r = (r.n) delta n - n (r_tau . delta n)
+      const Vector3 n = pairing_[s].normal, r = residual.jump[s], jump = jump_.jump(s, state.x);
+      Matrix3       turn = -dealii::outer_product(n, r - (r * n) * n);
+      for (unsigned int c = 0; c < dim; ++c)
+        turn[c][c] += r * n;
+      for (const NodeDerivative &d : normal_derivative(s))
+      {
+        const Matrix3      value  = turn * d.value;
+        const unsigned int column = blocks.node(d.node);
+        for (const Entry *e = jump_.begin(s); e != jump_.end(s); ++e)
+        {
+          const unsigned int row = blocks.node(e->node);
+          blocks.force[row * blocks.stride + column] += e->weight * value;
+        }
+        for (const auto &[k, coefficient] : gap_rows_[s])
+        {
+          const unsigned int row = blocks.slave(k);
+          blocks.gap[row * blocks.stride + column] += coefficient * (jump * d.value);
+        }
+      }
+      write(state, blocks, symmetric, system);
+    }
+    system.rhs.block(0).compress(dealii::VectorOperation::add);
+    system.rhs.block(1).compress(dealii::VectorOperation::add);
+    system.symmetric = system.symmetric && symmetric;
+  }
+
+  void GeometryTangent::write(const ContactState &state,
+                              const Blocks       &blocks,
+                              const bool          symmetric,
+                              LinearSystem       &system) const
+  {
+    const BlockLayout &layout = surfaces_.layout();
+    const auto        &nodes  = surfaces_.nodes();
+    const auto         add    = [&](const unsigned int row_node,
+                         const unsigned int row_component,
+                         const unsigned int column_node,
+                         const unsigned int column_component,
+                         const double       value)
+    {
+      if (surfaces_.fixed(row_node, row_component))
+        return;
+      const DoFIndex row = nodes[row_node].dofs[row_component];
+      if (surfaces_.fixed(column_node, column_component))
+        system.rhs.block(0)(row) -= value * state.prescribed[column_node][column_component];
+      else
+        (symmetric ? system.contact : system.variation).add(row, nodes[column_node].dofs[column_component], value);
+    };
+    const unsigned int n = blocks.nodes.size();
+    for (unsigned int r = 0; r < n; ++r)
+      for (unsigned int c = 0; c < n; ++c)
+      {
+        const Matrix3 &value = blocks.force[r * blocks.stride + c];
+        if (value == Matrix3())
+          continue;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+          {
+            add(blocks.nodes[r], i, blocks.nodes[c], j, symmetric ? 0.5 * value[i][j] : value[i][j]);
+            if (symmetric)
+              add(blocks.nodes[c], j, blocks.nodes[r], i, 0.5 * value[i][j]);
+          }
+      }
+    if (symmetric)
+      return;
+    for (unsigned int r = 0; r < blocks.slaves.size(); ++r)
+      for (unsigned int c = 0; c < n; ++c)
+      {
+        const Vector3     &value = blocks.gap[r * blocks.stride + c];
+        const unsigned int node  = blocks.nodes[c];
+        for (unsigned int j = 0; j < dim; ++j)
+          if (value[j] != 0.)
+          {
+            if (surfaces_.fixed(node, j))
+              system.rhs.block(1)(blocks.slaves[r]) -= value[j] * state.prescribed[node][j];
+            else
+              system.variation.add(layout.lambda(blocks.slaves[r]), nodes[node].dofs[j], value[j]);
+          }
+      }
+  }
+} // namespace Nodus

@@ -1,0 +1,260 @@
+#include <nodus/contact/geometry_tangent.h>
+#include <nodus/contact/site_values.h>
+#include <nodus/contact_problem_implementation.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+namespace Nodus
+{
+  namespace
+  {
+    /// Forces below this fraction of stiffness times displacement are not resolved to the tolerance of Newton (1e-8).
+    constexpr double relative_force_floor = 1e-5;
+    /// Relative force residual up to which an iterate right after a prescribed motion has all its statuses tested.
+    constexpr double settled_force = 1e-3;
+  } // namespace
+
+  std::string coordinates(const Point &X)
+  {
+    std::ostringstream text;
+    text << "(" << X << ")";
+    return text.str();
+  }
+
+  /// Freezes the geometry: projections, frames, jump operator and surface weights at the current positions.
+  void ContactProblem::Implementation::pair_surfaces()
+  {
+    const auto    timer  = console.time("pairing");
+    const Pairing before = pairing;
+    gather_state();
+    u_before_geometry = u_geometry;
+    surfaces->gather(solution.block(0), u_geometry);
+
+    const auto              &pairs = parameters.contact_pairs;
+    const std::vector<Point> X     = surfaces->positions(std::vector<Vector3>(surfaces->nodes().size()));
+    paired_at                      = state.x;
+    geometry                       = std::make_unique<ContactGeometry>(pairs, *surfaces, paired_at);
+    averaged.compute(pairs, *surfaces, *geometry, paired_at, X);
+    pairing.project(pairs, *surfaces, *geometry, averaged);
+    jump.build(pairs, *surfaces, *geometry, pairing, averaged);
+    weights.compute(pairs, *surfaces, averaged, paired_at, X);
+
+    if (!paired_before)
+    {
+      std::vector<double> distance;
+      for (unsigned int k = 0; k < pairing.size(); ++k)
+        distance.push_back(contact->distance(state, k));
+      status->initialize(pairing, distance);
+      paired_before     = true;
+      committed_pairing = pairing;
+      committed_area = nodal_area = weights.area();
+      return;
+    }
+    status->inherit(pairing);
+
+    // Lambda keeps its direction in space and its length in the new tangent planes, lambda the nodal force; nodes
+    // without partner lose all.
+    const auto owned = surfaces->owned_slave_nodes();
+    for (unsigned int k = owned.first; k < owned.second; ++k)
+    {
+      Vector3 Lambda;
+      for (unsigned int i = 0; i < 2; ++i)
+        Lambda += state.Lambda[k][i] * before[k].tangent[i];
+      double component[2] = {0., 0.};
+      for (unsigned int i = 0; i < 2; ++i)
+        if (pairing[k].found && pairing[k].tangent_free[i])
+          component[i] = Lambda * pairing[k].tangent[i];
+      const double norm = std::hypot(component[0], component[1]);
+      for (unsigned int i = 0; i < 2; ++i)
+        solution.block(2)(2 * k + i) = norm > 0. ? component[i] * Lambda.norm() / norm : 0.;
+      solution.block(1)(k) = pairing[k].found ? state.lambda[k] * nodal_area[k] / weights.area()[k] : 0.;
+    }
+    nodal_area = weights.area();
+    solution.block(1).compress(dealii::VectorOperation::insert);
+    solution.block(2).compress(dealii::VectorOperation::insert);
+    gather_state();
+  }
+
+  void ContactProblem::Implementation::gather_state()
+  {
+    std::vector<Vector3> u;
+    surfaces->gather(solution.block(0), u);
+    state.x = surfaces->positions(u);
+    state.increment.resize(u.size());
+    state.prescribed.resize(u.size());
+    for (unsigned int i = 0; i < u.size(); ++i)
+      state.increment[i] = u[i] - u_start[i];
+
+    // Multipliers live with their owners; the nodal arrays are replicated.
+    const unsigned int  n     = surfaces->slave_nodes().size();
+    const auto          owned = surfaces->owned_slave_nodes();
+    std::vector<double> all(3 * n, 0.);
+    for (unsigned int k = owned.first; k < owned.second; ++k)
+    {
+      all[3 * k]     = solution.block(1)(k);
+      all[3 * k + 1] = solution.block(2)(2 * k);
+      all[3 * k + 2] = solution.block(2)(2 * k + 1);
+    }
+    dealii::Utilities::MPI::sum(all, communicator, all);
+    state.lambda.resize(n);
+    state.Lambda.resize(n);
+    for (unsigned int k = 0; k < n; ++k)
+    {
+      state.lambda[k] = all[3 * k];
+      state.Lambda[k] = {{all[3 * k + 1], all[3 * k + 2]}};
+    }
+  }
+
+  NewtonProblem::Norms ContactProblem::Implementation::assemble()
+  {
+    const bool first        = std::exchange(newton_starts, false);
+    relevant_u              = solution.block(0);
+    const auto &constraints = boundary_conditions->increment_constraints(relevant_u);
+    {
+      const auto timer = console.time("bulk assembly");
+      solid->tangent(relevant_u, time, constraints, system.bulk, system.rhs.block(0), internal, external);
+    }
+    if (merged.geometry && !first)
+      pair_surfaces();
+    gather_state();
+    if (merged.threshold)
+      follow_pressure();
+
+    const Vector bulk_rhs(system.rhs.block(0));
+    Norms        norms = assemble_contact(constraints);
+    // Newton starts with the statuses that it inherits. Where prescribed displacements have just moved the boundary and
+    // left the bulk out of balance, gaps count but pressures do not.
+    const bool moved     = std::exchange(prescribed_before, norms.prescribed) > parameters.newton.contact_tolerance;
+    const bool unsettled = !first && moved && norms.force > settled_force;
+    if (merged.status && (!first || Newton(parameters.newton).converged(norms)))
+      if (const unsigned int changes = update_statuses(unsettled).changes; changes > 0)
+      {
+        system.rhs.block(0) = bulk_rhs;
+        norms               = assemble_contact(constraints);
+        norms.changes       = changes;
+      }
+    if (merged.geometry)
+    {
+      const auto timer = console.time("contact assembly");
+      GeometryTangent(parameters.contact_pairs, *surfaces, *geometry, averaged, pairing, jump, weights, *status)
+          .add(state, residual, /* symmetric = */ false, system);
+    }
+    return norms;
+  }
+
+  void ContactProblem::Implementation::follow_pressure()
+  {
+    std::vector<double> before(status->size());
+    for (unsigned int k = 0; k < before.size(); ++k)
+      before[k] = status->friction(k) ? status->threshold(k) : 0.;
+    status->freeze_threshold(site_pressure(weights, *status, state.lambda));
+
+    // Sticking nodes keep their friction traction mu lambda Lambda: as unknown of the iteration it is linear.
+    const auto owned = surfaces->owned_slave_nodes();
+    for (const ContactPoint &point : weights.points())
+      if (const unsigned int k = point.slaves[0]; point.slaves.size() == 1 && k >= owned.first && k < owned.second &&
+                                                  before[k] != 0. && status->friction(k) && status->stick(k))
+        for (unsigned int i = 0; i < 2; ++i)
+          solution.block(2)(2 * k + i) = state.Lambda[k][i] * before[k] / status->threshold(k);
+    solution.block(2).compress(dealii::VectorOperation::insert);
+    gather_state();
+  }
+
+  NewtonProblem::Norms
+  ContactProblem::Implementation::assemble_contact(const dealii::AffineConstraints<double> &constraints)
+  {
+    const auto timer = console.time("contact assembly");
+    Norms      norms;
+    Vector     prescribed(surfaces->layout().owned[0], communicator);
+    for (const auto i : surfaces->layout().owned[0])
+      if (constraints.is_constrained(i))
+        prescribed(i) = constraints.get_inhomogeneity(i);
+    prescribed.compress(dealii::VectorOperation::insert);
+    surfaces->gather(prescribed, state.prescribed);
+
+    residual      = contact->assemble(state, system, merged.threshold);
+    contact_force = 0.;
+    contact->add_forces(residual, contact_force);
+
+    Vector moved(solution.block(0));
+    moved -= committed.block(0);
+    const double length = std::max(moved.linfty_norm(), length_scale);
+    if (stiffness_scale == 0.)
+      stiffness_scale = system.bulk.largest_diagonal();
+    // The last term is round-off: without it a body that only translates would be measured against its own noise.
+    const double scale = std::max({internal.linfty_norm(),
+                                   external.linfty_norm(),
+                                   contact_force.linfty_norm(),
+                                   relative_force_floor * stiffness_scale * length});
+    double       force = 0.;
+    for (const auto i : surfaces->layout().owned[0])
+      if (!constraints.is_constrained(i))
+        force = std::max(force, std::abs(internal(i) - external(i) + contact_force(i)));
+    force            = dealii::Utilities::MPI::max(force, communicator);
+    norms.force      = scale > 0. ? force / scale : 0.;
+    norms.contact    = contact->norm(residual, length);
+    norms.prescribed = prescribed.linfty_norm() / length;
+    return norms;
+  }
+
+  unsigned int ContactProblem::Implementation::solve(BlockVector &correction, const double relative_tolerance)
+  {
+    const auto                 timer  = console.time("linear solver");
+    const LinearSolver::Report report = linear_solver->solve(system, correction, relative_tolerance);
+    if (!report.null_pivots.empty())
+      throw SolverFailure("the system is singular (" + std::to_string(report.null_pivots.size()) +
+                          " null pivots), first at " + unknown_locus(report.null_pivots.front()));
+    const long surplus = report.negative_pivots - 3 * static_cast<long>(surfaces->layout().n_slave_nodes);
+    if (report.negative_pivots >= 0 && surplus != 0)
+      console.remark("the tangent has " + std::to_string(std::abs(surplus)) + " negative eigenvalues " +
+                     (surplus > 0 ? "more" : "less") + " than multipliers: the state is not stable");
+    // The solver leaves prescribed components alone: they take what the constraints still ask for.
+    boundary_conditions->increment_constraints(relevant_u).distribute(correction.block(0));
+    return report.iterations;
+  }
+
+  void ContactProblem::Implementation::advance(const double factor, const BlockVector &correction)
+  {
+    solution.add(factor, correction);
+  }
+
+  std::string ContactProblem::Implementation::site_locus(const unsigned int site) const
+  {
+    if (site >= surfaces->n_sites())
+      return "";
+    const unsigned int p    = surfaces->pair(site);
+    const auto        &name = parameters.contact_pairs[p].name;
+    return (surfaces->is_point(site) ? "integration point " : "slave node ") +
+           coordinates(surfaces->site_position(site)) + " of contact pair " + std::to_string(p + 1) +
+           (name.empty() ? "" : " ('" + name + "')");
+  }
+
+  std::string ContactProblem::Implementation::unknown_locus(const DoFIndex flat_index) const
+  {
+    const BlockLayout &layout = surfaces->layout();
+    if (flat_index >= layout.lambda(0))
+    {
+      const bool         pressure = flat_index < layout.Lambda(0, 0);
+      const unsigned int k        = pressure ? flat_index - layout.lambda(0) : (flat_index - layout.Lambda(0, 0)) / 2;
+      return (pressure ? "the contact multiplier of " : "the friction multiplier of ") + site_locus(k) +
+             ": this constraint repeats another one (over-constraint)";
+    }
+    std::map<DoFIndex, Point> points;
+    dealii::DoFTools::map_dofs_to_support_points(*mapping, dof_handler, points);
+    const auto  owner = points.find(flat_index);
+    std::string here =
+        owner == points.end() || !surfaces->layout().owned[0].is_element(flat_index) ? "" : coordinates(owner->second);
+    for (const auto &part : dealii::Utilities::MPI::all_gather(communicator, here))
+      if (!part.empty())
+        here = part;
+    return "the displacement of node " + here +
+           ": its body is free to move; hold it with a boundary condition, or close the contact first ('Initial status "
+           "= closed')";
+  }
+} // namespace Nodus
