@@ -101,6 +101,8 @@ namespace Nodus
         if (!owned.is_element(first))
           ghosts.push_back(first / dim);
       }
+      for (const auto face : cell->face_indices())
+        AssertThrow(cell->at_boundary(face) || !cell->neighbor_is_coarser(face), ExcNotImplemented());
       volume.reinit(cell);
       for (const auto q : volume.quadrature_point_indices())
       {
@@ -126,7 +128,6 @@ namespace Nodus
 
   void SolidAssembler::Scratch::make_positions(NodeMatrix &tangent)
   {
-    AssertThrow(!dof_handler.get_triangulation().has_hanging_nodes(), ExcNotImplemented());
     tangent.reinit(nodes, cell_nodes, n_nodes);
     positions.clear();
     positions.reserve(cells.size() * n_nodes * (n_nodes + 1) / 2);

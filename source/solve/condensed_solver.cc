@@ -14,6 +14,10 @@ namespace Nodus
 {
   namespace
   {
+    /// A hierarchy is made anew when its iterations per digit have grown by this factor, or this part of the slave
+    /// nodes has other constraints than when it was made: setting it up costs as much as some twenty cycles.
+    constexpr double growth = 1.5, changed_part = 0.1;
+
     /// Condensation, one multigrid cycle and expansion: exact but for multigrid and the variation.
     class CondensedCycle
     {
@@ -64,17 +68,16 @@ namespace Nodus
     first_iterations_ = last_iterations_ = 0.;
   }
 
-  /// Few nodes may have changed, and the iterations must not have grown by more than half.
   bool CondensedSolver::hierarchy_fits(const std::vector<char> &signature, const MPI_Comm communicator) const
   {
-    if (!multigrid_ || last_iterations_ > 1.5 * first_iterations_ + 0.6)
+    if (!multigrid_ || last_iterations_ > growth * first_iterations_ + 0.6)
       return false;
     unsigned int changed = 0;
     for (unsigned int k = 0; k < signature.size(); ++k)
       changed += signature[k] != signature_[k];
     changed                  = dealii::Utilities::MPI::sum(changed, communicator);
     const unsigned int total = dealii::Utilities::MPI::sum(static_cast<unsigned int>(signature.size()), communicator);
-    return 20 * changed <= total;
+    return changed <= changed_part * total;
   }
 
   unsigned int CondensedSolver::conjugate_gradients(const Condensation &condensation,

@@ -26,7 +26,7 @@ namespace Nodus
   private:
     void make_multigrid(const LinearSystem &system, const Condensation &condensation);
     bool hierarchy_fits(const std::vector<char> &signature, MPI_Comm communicator) const;
-    /// Both return the iterations; @p x starts from zero.
+    /// All return the iterations; @p x starts from zero.
     unsigned int
     iterate(const SaddlePointOperator &matrix, Condensation &condensation, double tolerance, BlockVector &x) const;
     unsigned int
