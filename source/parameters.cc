@@ -183,7 +183,11 @@ namespace Nodus
                  solver.type,
                  solver_names,
                  "Linear solver [-]: direct is MUMPS, block is FGMRES with algebraic multigrid for large models.");
-      prm.add_parameter("Tolerance", solver.tolerance, "Block solver: relative residual [-].", positive);
+      prm.add_parameter(
+          "Tolerance",
+          solver.tolerance,
+          "Block solver: least relative residual; corrections that Newton goes on from need not reach it [-].",
+          positive);
       prm.add_parameter("Maximum iterations",
                         solver.maximum_iterations,
                         "Block solver: iterations before it gives up [-].",

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """Loops around Newton against loops merged into Newton: iterations, CPU and answers of the cases of prm/.
 
-Writes modes.md. Cases may be named on the command line; without names all run.
+Writes modes.md. Cases may be named on the command line: the others keep their earlier results; without names all run.
 """
 
+import json
 import os
 import sys
 
@@ -51,34 +52,47 @@ def measure(case, mode):
     return run, list(rows)
 
 
+def rows_of(case):
+    """Rows of the table: one for each mode."""
+    table, reference = [], None
+    for mode in MODES:
+        run, rows = measure(case, mode)
+        if not run.converged:
+            table.append([case, mode, "stops", *[""] * 6])
+            continue
+        newton = [int(row["Newton iterations"]) for row in rows]
+        forces = np.array([[row[key] for key in FORCES] + [row["maximum pressure"]] for row in rows])
+        if reference is None:
+            reference = forces
+        scale = np.abs(reference).max(axis=0)
+        scale[:3] = scale[:3].max()
+        timing = run.timing()
+        table.append([
+            case,
+            mode,
+            f"{sum(newton)}",
+            f"{sum(newton) / len(newton):.1f}",
+            f"{max(newton)}",
+            f"{sum(int(row['Krylov iterations']) for row in rows)}",
+            f"{sum(int(row['fallbacks']) for row in rows)}",
+            f"{run.cpu:.1f} ({timing.get('linear solver', 0):.1f})",
+            f"{np.max(np.abs(forces - reference) / scale):.1e}",
+        ])  # fmt: skip
+    return table
+
+
 def main():
-    cases = sys.argv[1:] or list(CASES)
-    table = []
-    for case in cases:
-        reference = None
-        for mode in MODES:
-            run, rows = measure(case, mode)
-            if not run.converged:
-                table.append([case, mode, "stops", *[""] * 6])
-                continue
-            newton = [int(row["Newton iterations"]) for row in rows]
-            forces = np.array([[row[key] for key in FORCES] + [row["maximum pressure"]] for row in rows])
-            if reference is None:
-                reference = forces
-            scale = np.abs(reference).max(axis=0)
-            scale[:3] = scale[:3].max()
-            timing = run.timing()
-            table.append([
-                case,
-                mode,
-                f"{sum(newton)}",
-                f"{sum(newton) / len(newton):.1f}",
-                f"{max(newton)}",
-                f"{sum(int(row['Krylov iterations']) for row in rows)}",
-                f"{sum(int(row['fallbacks']) for row in rows)}",
-                f"{run.cpu:.1f} ({timing.get('linear solver', 0):.1f})",
-                f"{np.max(np.abs(forces - reference) / scale):.1e}",
-            ])  # fmt: skip
+    path = os.path.join(common.SCRATCH, "modes.json")
+    done = {}
+    if os.path.exists(path):
+        with open(path) as file:
+            done = json.load(file)
+    os.makedirs(common.SCRATCH, exist_ok=True)
+    for case in sys.argv[1:] or CASES:
+        done[case] = rows_of(case)
+        with open(path, "w") as file:
+            json.dump(done, file)
+    table = [row for case in CASES for row in done.get(case, [])]
     header = ["case", "merged into Newton", "Newton iterations", "per increment", "most", "Krylov", "fallbacks",
               "CPU s (linear solver)", "difference"]  # fmt: skip
     path = os.path.join(HERE, "modes.md")
