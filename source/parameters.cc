@@ -187,7 +187,11 @@ namespace Nodus
           "Linear solver [-]: direct is MUMPS; condensed eliminates multipliers and held slave displacements and "
           "needs conjugate gradients with algebraic multigrid (large models); block is FGMRES on all unknowns, "
           "for what cannot be condensed: integration points and consistent weights.");
-      prm.add_parameter("Tolerance", solver.tolerance, "Block and condensed solver: relative residual [-].", positive);
+      prm.add_parameter("Tolerance",
+                        solver.tolerance,
+                        "Block and condensed solver: least relative residual; corrections that Newton goes on from "
+                        "need not reach it [-].",
+                        positive);
       prm.add_parameter("Maximum iterations",
                         solver.maximum_iterations,
                         "Block and condensed solver: iterations before they give up [-].",

@@ -26,6 +26,9 @@ SCHEMES = {
     "averaged, segment": {"Scheme": "averaged", "Integration": "segment"},
 }
 
+# Nothing merged into Newton's iteration: for studies that count the passes of the loops.
+THREE_LOOPS = {f"{loop} loop/Mode": "fixed point" for loop in ("Geometry", "Threshold", "Status")}
+
 
 class Run:
     """One finished run: exit code, log, CPU seconds, and the tables and surfaces that it wrote."""

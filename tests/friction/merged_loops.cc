@@ -35,14 +35,17 @@ namespace
   struct Outcome
   {
     std::vector<double> values; ///< displacement of a corner and contact pressures
-    IterationCounts     counts; ///< of the last increment
+    IterationCounts     counts; ///< of the last increment; fallbacks of all
   };
 
   Outcome run(const Parameters &p)
   {
     ContactProblem problem(p, world(), log());
+    unsigned int   fallbacks = 0;
+    problem.on_increment([&](unsigned int, double) { fallbacks += problem.iterations().fallbacks; });
     problem.run();
     Outcome outcome{problem.contact_fields()[0].pressure, problem.iterations()};
+    outcome.counts.fallbacks = fallbacks;
     outcome.values.push_back(1e12 * problem.displacement(1, Point(0, 0, 0))[0]); // about as large as the pressures
     return outcome;
   }
@@ -87,10 +90,10 @@ int main(int argc, char **argv)
 
   // Too few iterations for the merged loops, enough for each pass of the nested ones.
   p.load_stepping             = {{1.}, {2}};
-  p.newton.maximum_iterations = 7;
+  p.newton.maximum_iterations = 8;
   const Outcome fallback      = run(p);
   use_loops(p);
   const Outcome again = run(p);
-  check("fallback is counted", fallback.counts.fallbacks == 1);
+  check("fallback is counted", fallback.counts.fallbacks > 0);
   check("fallback gives the answer of the loops to 1e-9", difference(fallback, again) <= 1e-9);
 }

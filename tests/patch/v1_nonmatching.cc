@@ -26,6 +26,7 @@ int main(int argc, char **argv)
     p.contact_pairs                    = {upper_is_slave ? pair(upper, lower) : pair(lower, upper)};
     p.contact_pairs[0].surface_measure = ContactPairParameters::SurfaceMeasure::reference;
     p.output.results_folder            = "v1_results";
+    use_loops(p); // the references keep the geometry of the start
 
     ContactProblem problem(p, world(), log());
     problem.run();
