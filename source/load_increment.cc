@@ -20,14 +20,15 @@ namespace Nodus
     constexpr unsigned int patience = 8;
   } // namespace
 
-  /// The loops as the parameters ask for them; where a merged iteration fails, once more with all three as loops.
+  /// The loops as the parameters ask for them; where a merged iteration fails, once more with the geometry as a loop,
+  /// and at last with all three as loops.
   void ContactProblem::Implementation::solve_increment()
   {
     counts = IterationCounts();
     merged = {parameters.geometry_loop.mode == LoopParameters::Mode::newton,
               parameters.threshold_loop.mode == LoopParameters::Mode::newton && status->has_friction(),
               parameters.status_loop.mode == LoopParameters::Mode::newton};
-    if (merged.any())
+    while (merged.any())
       try
       {
         solve_loops();
@@ -35,9 +36,13 @@ namespace Nodus
       }
       catch (const SolverFailure &failure)
       {
-        console.remark(std::string("merged iteration given up: ") + failure.what() + "; again with three loops");
+        MergedLoops fewer;
+        if (merged.geometry)
+          fewer = {false, merged.threshold, merged.status};
+        console.remark(std::string("merged iteration given up: ") + failure.what() + "; again with " +
+                       (fewer.any() ? "a geometry loop" : "three loops"));
         roll_back();
-        merged = MergedLoops();
+        merged = fewer;
         ++counts.fallbacks;
       }
     solve_loops();

@@ -156,7 +156,7 @@ namespace Nodus
                  loop.mode,
                  mode_names,
                  "fixed point: a loop around Newton's method; newton: " + mode +
-                     " in each Newton iteration, with the loops of an increment that stalls as a fallback [-].");
+                     " in each Newton iteration, with loops as the fallback where that stalls [-].");
       prm.add_parameter("Maximum passes", loop.maximum_passes, "Passes before the increment is cut [-].", at_least_one);
       if (!tolerance.empty())
         prm.add_parameter("Tolerance", loop.tolerance, tolerance, positive);
