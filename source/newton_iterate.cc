@@ -143,7 +143,7 @@ namespace Nodus
     {
       const auto timer = console.time("contact assembly");
       GeometryTangent(parameters.contact_pairs, *surfaces, *geometry, averaged, pairing, jump, weights, *status)
-          .add(state, residual, /* symmetric = */ false, system);
+          .add(state, residual, system);
     }
     return norms;
   }

@@ -61,8 +61,9 @@ struct ContactFixture
   dealii::FullMatrix<double> matrix() const
   {
     dealii::FullMatrix<double> K(surfaces->layout().size(), surfaces->layout().size());
-    for (unsigned int i = 0; i < system.contact.value.size(); ++i)
-      K(system.contact.row[i], system.contact.column[i]) += system.contact.value[i];
+    for (const auto *part : {&system.contact, &system.variation})
+      for (unsigned int i = 0; i < part->value.size(); ++i)
+        K(part->row[i], part->column[i]) += part->value[i];
     return K;
   }
 

@@ -26,7 +26,7 @@ SCHEMES = {
     "averaged, segment": {"Scheme": "averaged", "Integration": "segment"},
 }
 
-# Nothing merged into Newton's iteration: for studies that count the passes of the loops.
+# Nothing merged into Newton's iteration: the loops of the paper, and studies count their passes.
 THREE_LOOPS = {f"{loop} loop/Mode": "fixed point" for loop in ("Geometry", "Threshold", "Status")}
 
 
@@ -80,9 +80,10 @@ def write_case(name, text):
 
 
 def run(prm, name, sets=None, pair=None, ranks=1):
-    """Runs a case. sets: {"Section/Key": value}; pair: keys of "Contact pair 1". A failed run is a result too."""
+    """Runs a case, with three nested loops unless `sets` has other modes. sets: {"Section/Key": value}; pair: keys of
+    "Contact pair 1". A failed run is a result too."""
     folder = os.path.join(SCRATCH, name)
-    keys = dict(sets or {})
+    keys = {**THREE_LOOPS, **(sets or {})}
     for key, value in (pair or {}).items():
         keys["Contact pair 1/" + key] = value
     keys["Output/Results folder"] = folder

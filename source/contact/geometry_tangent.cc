@@ -246,10 +246,7 @@ namespace Nodus
     blocks.edges.clear();
   }
 
-  void GeometryTangent::add(const ContactState    &state,
-                            const ContactResidual &residual,
-                            const bool             symmetric,
-                            LinearSystem          &system) const
+  void GeometryTangent::add(const ContactState &state, const ContactResidual &residual, LinearSystem &system) const
   {
     const unsigned int rank   = dealii::Utilities::MPI::this_mpi_process(surfaces_.layout().communicator);
     const auto         active = [&](const unsigned int site) { return residual.jump[site].norm_square() > 0.; };
@@ -275,14 +272,11 @@ namespace Nodus
                   point.motion);
         project(face.pair, p.master, point);
         add_point(point, residual, blocks);
-        if (!symmetric)
-        {
-          add_offset(0, face.face, p.xi, p.eta, point, blocks);
-          add_offset(1, p.master.face, p.master.xi, p.master.eta, point, blocks);
-        }
+        add_offset(0, face.face, p.xi, p.eta, point, blocks);
+        add_offset(1, p.master.face, p.master.xi, p.master.eta, point, blocks);
       }
       finish_offsets(face.pair, blocks);
-      write(state, blocks, symmetric, system);
+      write(state, blocks, system);
     }
 
     for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
@@ -298,13 +292,10 @@ namespace Nodus
         point.sites.emplace_back(s, 1.);
         add_point(point, residual, blocks);
         const Projection &master = pairing_[s].master;
-        if (!symmetric)
-        {
-          if (surfaces_.is_point(s))
-            add_offset(0, surfaces_.point(s).face, surfaces_.point(s).xi, surfaces_.point(s).eta, point, blocks);
-          add_offset(1, master.face, master.xi, master.eta, point, blocks);
-          finish_offsets(p, blocks);
-        }
+        if (surfaces_.is_point(s))
+          add_offset(0, surfaces_.point(s).face, surfaces_.point(s).xi, surfaces_.point(s).eta, point, blocks);
+        add_offset(1, master.face, master.xi, master.eta, point, blocks);
+        finish_offsets(p, blocks);
       }
       // r turns with the normal: delta r = (r.n) delta n - n (r_tau . delta n)
       const Vector3 n = pairing_[s].normal, r = residual.jump[s], jump = jump_.jump(s, state.x);
@@ -326,17 +317,14 @@ namespace Nodus
           blocks.gap[row * blocks.stride + column] += coefficient * (jump * d.value);
         }
       }
-      write(state, blocks, symmetric, system);
+      write(state, blocks, system);
     }
     system.rhs.block(0).compress(dealii::VectorOperation::add);
     system.rhs.block(1).compress(dealii::VectorOperation::add);
-    system.symmetric = system.symmetric && symmetric;
+    system.symmetric = false;
   }
 
-  void GeometryTangent::write(const ContactState &state,
-                              const Blocks       &blocks,
-                              const bool          symmetric,
-                              LinearSystem       &system) const
+  void GeometryTangent::write(const ContactState &state, const Blocks &blocks, LinearSystem &system) const
   {
     const BlockLayout &layout = surfaces_.layout();
     const auto        &nodes  = surfaces_.nodes();
@@ -352,7 +340,7 @@ namespace Nodus
       if (surfaces_.fixed(column_node, column_component))
         system.rhs.block(0)(row) -= value * state.prescribed[column_node][column_component];
       else
-        (symmetric ? system.contact : system.variation).add(row, nodes[column_node].dofs[column_component], value);
+        system.variation.add(row, nodes[column_node].dofs[column_component], value);
     };
     const unsigned int n = blocks.nodes.size();
     for (unsigned int r = 0; r < n; ++r)
@@ -364,13 +352,9 @@ namespace Nodus
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = 0; j < dim; ++j)
           {
-            add(blocks.nodes[r], i, blocks.nodes[c], j, symmetric ? 0.5 * value[i][j] : value[i][j]);
-            if (symmetric)
-              add(blocks.nodes[c], j, blocks.nodes[r], i, 0.5 * value[i][j]);
+            add(blocks.nodes[r], i, blocks.nodes[c], j, value[i][j]);
           }
       }
-    if (symmetric)
-      return;
     for (unsigned int r = 0; r < blocks.slaves.size(); ++r)
       for (unsigned int c = 0; c < n; ++c)
       {

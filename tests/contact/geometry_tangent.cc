@@ -95,7 +95,7 @@ int main(int argc, char **argv)
                     fixture.jump,
                     fixture.weights,
                     *fixture.status)
-        .add(state, residual, false, fixture.system);
+        .add(state, residual, fixture.system);
     auto K = fixture.matrix();
 
     const auto  &layout   = fixture.surfaces->layout();

@@ -103,7 +103,7 @@ subsection Newton
   set Contact tolerance = 1e-6
 end
 subsection Linear solver
-  set Type      = block
+  set Type      = condensed
   set Tolerance = 1e-8
 end
 """
@@ -206,8 +206,9 @@ def line(degree, n, poisson, scheme):
 
 
 SCHEMES = ("nodal", "integration point", "averaged, segment")
-CASES = [(1, n, 0.0, scheme) for n in (4, 6, 8) for scheme in SCHEMES]
-CASES += [(1, 6, 0.3, "averaged, segment"), (2, 3, 0.0, "nodal"), (2, 3, 0.0, "averaged, segment")]
+CASES = [(1, n, 0.0, scheme) for n in (3, 4, 5, 6, 8) for scheme in SCHEMES]
+CASES += [(1, 6, 0.3, "averaged, segment")]
+CASES += [(2, n, 0.0, scheme) for n in (1.5, 2, 2.5, 3, 4) for scheme in ("nodal", "averaged, segment")]
 
 
 def main():

@@ -47,7 +47,7 @@ def main():
     for case, (prm, sets) in CASES.items():
         for kind, pair in KINDS.items():
             name = f"unsticking_{case}_{kind}".replace(" ", "_").replace(",", "")
-            run = common.run(os.path.join(PRM, prm), name, {**common.THREE_LOOPS, **sets}, pair)
+            run = common.run(os.path.join(PRM, prm), name, dict(sets), pair)
             table = run.contact() if os.path.exists(os.path.join(run.folder, "contact.csv")) else []
             total = {
                 key: sum(row[key] for row in table)

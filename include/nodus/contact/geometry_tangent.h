@@ -30,9 +30,8 @@ namespace Nodus
                     const SurfaceWeights                     &weights,
                     const Status                             &status);
 
-    /// Adds to the contact couplings of @p system, after ContactAssembler::assemble returned @p residual. @p symmetric:
-    /// only the symmetric part of the force terms, for solvers that need it. Collective.
-    void add(const ContactState &state, const ContactResidual &residual, bool symmetric, LinearSystem &system) const;
+    /// Adds to the variation of @p system, after ContactAssembler::assemble returned @p residual. Collective.
+    void add(const ContactState &state, const ContactResidual &residual, LinearSystem &system) const;
 
   private:
     using Matrix3 = dealii::Tensor<2, dim>;
@@ -76,7 +75,7 @@ namespace Nodus
         unsigned int side, unsigned int face, double xi, double eta, const ProjectedPoint &point, Blocks &blocks) const;
     void finish_offsets(unsigned int pair, Blocks &blocks) const;
     void add_point(const ProjectedPoint &point, const ContactResidual &residual, Blocks &blocks) const;
-    void write(const ContactState &state, const Blocks &blocks, bool symmetric, LinearSystem &system) const;
+    void write(const ContactState &state, const Blocks &blocks, LinearSystem &system) const;
 
     const std::vector<ContactPairParameters>                 &pairs_;
     const ContactSurfaces                                    &surfaces_;

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -14,6 +15,8 @@
 
 namespace Nodus
 {
+  struct ConstraintCluster;
+
   /// A system whose constraints do not give the displacements of the slave nodes: it needs another solver.
   class NotCondensable : public std::runtime_error
   {
@@ -84,7 +87,6 @@ namespace Nodus
       Matrix3               own;
       std::vector<Coupling> others;
     };
-    struct Cluster; ///< constraints that see each other's displacements, known to every rank
 
     void make_sites();
     void classify(Site &site, const Matrix3 &C) const;
@@ -111,7 +113,7 @@ namespace Nodus
     const NodeMap                               &nodes_;
     std::vector<Site>                            sites_; ///< of the owned slave nodes
     std::vector<std::unique_ptr<Row>>            rows_;  ///< by local node; null where T is the identity
-    std::unique_ptr<Cluster>                     cluster_;
+    std::unique_ptr<ConstraintCluster>           cluster_;
     std::vector<char>                            taken_out_;
     std::vector<std::pair<unsigned int, double>> eliminated_; ///< owned unknowns without meaning, and a diagonal
     std::unique_ptr<Epetra_CrsMatrix>            T_;          ///< rows that are not those of the identity
