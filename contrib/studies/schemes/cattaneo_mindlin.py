@@ -213,12 +213,12 @@ CASES += [(2, n, 0.0, scheme) for n in (1.5, 2, 2.5, 3, 4) for scheme in ("nodal
 
 def main():
     cases = [c for c in CASES if c[1] == 4] if "--quick" in sys.argv else CASES
-    finest = max(c[1] for c in cases)
+    finest = {degree: max(c[1] for c in cases if c[0] == degree) for degree in {c[0] for c in cases}}
     rows, curves = [], []
     for degree, n, poisson, scheme in cases:
         row, values, profile = line(degree, n, poisson, scheme)
         rows.append(row)
-        if values and poisson == 0 and (n == finest or degree == 2):
+        if values and poisson == 0 and n == finest[degree]:
             curves.append((f"Q{degree}, n = {n}, {scheme}", values, profile))
     part = os.path.join(common.SCRATCH, "cattaneo_part.md")
     with open(os.path.join(HERE, "cattaneo_mindlin.md"), "w") as file:

@@ -136,7 +136,7 @@ def main():
     with open(os.path.join(HERE, "cost.md"), "w") as file:
         file.write(
             "## Cost of the schemes\n\n" + words
-            + "\n\nQ1, default surface and normal, block solver; the least of "
+            + "\n\nQ1, default surface and normal, three loops, condensed solver; the least of "
             + ", ".join(f"{SIZES[n]}" for n in times)
             + " alternating runs at " + ", ".join(f"{n}" for n in times) + " faces per radius; CPU seconds on one core.\n\n"
             + text + "\n![Contact share, and error against CPU](cost.png)\n"
