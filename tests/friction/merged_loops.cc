@@ -96,4 +96,6 @@ int main(int argc, char **argv)
   const Outcome again = run(p);
   check("fallback is counted", fallback.counts.fallbacks > 0);
   check("fallback gives the answer of the loops to 1e-9", difference(fallback, again) <= 1e-9);
+  if (std::getenv("NODUS_TEST_LOG") != nullptr)
+    std::cout << "    " << difference(fallback, again) << std::endl;
 }

@@ -14,7 +14,7 @@ import common  # noqa: E402
 
 EXACT = 9259259.26
 TRACTION = "-1e7*{load}*t*x/sqrt(x^2+y^2); -1e7*{load}*t*y/sqrt(x^2+y^2)"
-LEVELS = {1: (0, 1, 2, 3, 4), 2: (0, 1, 2, 3)}
+LEVELS = {1: (0, 1, 2, 3, 4), 2: (0, 1, 2, 3, 4)}
 # cells of the quarter on the coarsest mesh: inner ring (slave) and outer ring around
 MESHES = {"non-matching": (6, 4), "matching": (6, 6)}
 
