@@ -23,7 +23,8 @@ namespace Nodus
     make_multiplier_blocks(augmentation_factor);
     make_augmented_matrix();
     // three sweeps pay off against the stiff couplings of the augmentation
-    multigrid_ = std::make_unique<Multigrid>(*augmented_, rigid_body_modes(system.bulk(), rigid_body_data), 3);
+    multigrid_ =
+        std::make_unique<Multigrid>(system.bulk(), *augmented_, rigid_body_modes(system.bulk(), rigid_body_data), 3);
   }
 
   void BlockPreconditioner::make_multiplier_blocks(const double augmentation_factor)
@@ -125,8 +126,8 @@ namespace Nodus
     }
     entries = system_.displacement_ownership().exchange(std::move(entries));
 
-    augmented_ = std::make_unique<CorrectedMatrix>(
-        system_.bulk(), std::vector<char>(dim * system_.bulk().map().size(), 0), entries);
+    augmented_ =
+        std::make_unique<CorrectedMatrix>(system_.bulk(), std::vector<char>(system_.bulk().map().size(), 0), entries);
   }
 
   void BlockPreconditioner::apply_multiplier_blocks(Epetra_MultiVector &m) const

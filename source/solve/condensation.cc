@@ -2,7 +2,6 @@
 #include <nodus/solve/constraint_cluster.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/mpi.templates.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,30 +34,6 @@ namespace Nodus
   }
 
   Condensation::~Condensation() = default;
-
-  unsigned int Condensation::owner(const DoFIndex node) const
-  {
-    return system_.displacement_ownership().owner(dim * node);
-  }
-
-  std::map<DoFIndex, std::vector<double>>
-  Condensation::ask(const std::vector<DoFIndex>                            &nodes,
-                    const std::function<std::vector<double>(unsigned int)> &answer) const
-  {
-    using dealii::Utilities::MPI::some_to_some;
-    std::map<unsigned int, std::vector<DoFIndex>> questions;
-    for (const DoFIndex node : nodes)
-      questions[owner(node)].push_back(node);
-    std::map<unsigned int, std::vector<std::vector<double>>> answers;
-    for (const auto &[rank, asked] : some_to_some(nodes_.communicator(), questions))
-      for (const DoFIndex node : asked)
-        answers[rank].push_back(answer(nodes_.local(node)));
-    std::map<DoFIndex, std::vector<double>> result;
-    for (const auto &[rank, received] : some_to_some(nodes_.communicator(), answers))
-      for (unsigned int k = 0; k < received.size(); ++k)
-        result[questions[rank][k]] = received[k];
-    return result;
-  }
 
   void Condensation::make_sites()
   {
@@ -239,7 +214,7 @@ namespace Nodus
       }
       return numbers;
     };
-    for (const auto &[node, numbers] : ask(ghosts, pack))
+    for (const auto &[node, numbers] : nodes_.ask(ghosts, pack))
       if (!numbers.empty())
       {
         auto          row = std::make_unique<Row>();
@@ -256,14 +231,15 @@ namespace Nodus
 
   void Condensation::make_transformation()
   {
-    taken_out_.assign(dim * nodes_.size(), 0);
+    taken_out_.assign(nodes_.size(), 0);
     std::vector<MatrixEntry> entries;
     for (unsigned int i = 0; i < nodes_.size(); ++i)
     {
       const Row *row = rows_[i].get();
       if (!row)
         continue;
-      std::fill_n(taken_out_.begin() + dim * i, dim, 1);
+      taken_out_[i] = 1;
+      replaced_.push_back(i);
       if (i >= nodes_.n_owned())
         continue;
       for (unsigned int c = 0; c < dim; ++c)
@@ -293,9 +269,8 @@ namespace Nodus
     }
   }
 
-  void Condensation::apply_matrix(const Epetra_MultiVector &u, Epetra_MultiVector &f) const
+  void Condensation::add_springs(const Epetra_MultiVector &u, Epetra_MultiVector &f) const
   {
-    system_.apply_stiffness(u, f);
     system_.B().Multiply(false, u, multiplier_);
     apply_stiffness(multiplier_);
     system_.B().Multiply(true, multiplier_, part_);
@@ -306,7 +281,7 @@ namespace Nodus
   {
     T_->Multiply(false, y, u);
     for (int i = 0; i < u.MyLength(); ++i)
-      if (!taken_out_[i])
+      if (!taken_out_[i / dim])
         u[0][i] = y[0][i];
   }
 
@@ -314,7 +289,7 @@ namespace Nodus
   {
     T_->Multiply(true, f, y);
     for (int i = 0; i < y.MyLength(); ++i)
-      if (!taken_out_[i])
+      if (!taken_out_[i / dim])
         y[0][i] += f[0][i];
   }
 
@@ -322,7 +297,8 @@ namespace Nodus
   {
     Epetra_MultiVector &result = y.trilinos_vector();
     apply_transformation(x.trilinos_vector(), u_);
-    apply_matrix(u_, f_);
+    system_.apply_stiffness(u_, f_);
+    add_springs(u_, f_);
     apply_transposed(f_, result);
     for (const auto &[i, diagonal] : eliminated_)
       result[0][i] = diagonal * x.trilinos_vector()[0][i];
@@ -352,7 +328,9 @@ namespace Nodus
         u_g[0][dim * sites_[k].node + c] = u[c];
     }
 
-    apply_matrix(u_g, f_);
+    system_.bulk().vmult_columns(f_[0], u_g[0], replaced_);
+    system_.add_coupling(u_g, f_);
+    add_springs(u_g, f_);
     multiplier_ = b.block(1).trilinos_vector();
     apply_stiffness(multiplier_);
     system_.B().Multiply(true, multiplier_, part_);
@@ -371,7 +349,8 @@ namespace Nodus
     u.Update(1., particular_.trilinos_vector(), 1.);
 
     // m = D (B u - g), and what is left of equilibrium goes to the constraints
-    system_.apply_stiffness(u, f_);
+    system_.bulk().vmult_rows(f_[0], u[0], replaced_);
+    system_.add_coupling(u, f_);
     system_.B().Multiply(false, u, m);
     m.Update(-1., g, 1.);
     apply_stiffness(m);

@@ -27,7 +27,7 @@ namespace Nodus
     std::sort(asked.begin(), asked.end());
     asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
     const auto constraints_of =
-        ask(asked, [&](const unsigned int node) { return std::vector<double>{double(n_constraints(node))}; });
+        nodes_.ask(asked, [&](const unsigned int node) { return std::vector<double>{double(n_constraints(node))}; });
 
     std::vector<DoFIndex> touched;
     for (Site &site : sites_)
@@ -43,12 +43,12 @@ namespace Nodus
             touched.push_back(site.rows[k].node);
           }
         }
-    ask(touched,
-        [&](const unsigned int node)
-        {
-          site_of.at(node)->coupled = true;
-          return std::vector<double>();
-        });
+    nodes_.ask(touched,
+               [&](const unsigned int node)
+               {
+                 site_of.at(node)->coupled = true;
+                 return std::vector<double>();
+               });
     for (Site &site : sites_)
       if (site.coupled)
         site.n_directions = site.n_constraints;

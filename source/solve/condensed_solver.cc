@@ -1,3 +1,4 @@
+#include <nodus/solve/block_solver.h>
 #include <nodus/solve/condensation.h>
 #include <nodus/solve/condensed_solver.h>
 
@@ -15,8 +16,8 @@ namespace Nodus
   namespace
   {
     /// A hierarchy is made anew when its iterations per digit have grown by this factor, or this part of the slave
-    /// nodes has other constraints than when it was made: setting it up costs as much as some twenty cycles.
-    constexpr double growth = 1.5, changed_part = 0.1;
+    /// nodes has other constraints than when it was made: setting it up costs as much as some ten cycles.
+    constexpr double growth = 1.4, changed_part = 0.02;
 
     /// Condensation, one multigrid cycle and expansion: exact but for multigrid and the variation.
     class CondensedCycle
@@ -53,7 +54,6 @@ namespace Nodus
   CondensedSolver::CondensedSolver(const LinearSolverParameters &parameters, const RigidBodyData &rigid_body_data)
       : parameters_(parameters)
       , rigid_body_data_(rigid_body_data)
-      , block_solver_(parameters, rigid_body_data)
   {
   }
 
@@ -63,7 +63,7 @@ namespace Nodus
     matrix_ = std::make_unique<CorrectedMatrix>(system.bulk, condensation.taken_out(), condensation.correction());
     std::vector<double> modes = rigid_body_modes(system.bulk, rigid_body_data_);
     condensation.transform_modes(modes);
-    multigrid_        = std::make_unique<Multigrid>(*matrix_, std::move(modes), 2);
+    multigrid_        = std::make_unique<Multigrid>(system.bulk, *matrix_, modes, 2);
     signature_        = condensation.signature();
     first_iterations_ = last_iterations_ = 0.;
   }
@@ -110,21 +110,22 @@ namespace Nodus
     return before + control.last_step();
   }
 
-  unsigned int CondensedSolver::fgmres(const SaddlePointOperator &matrix,
-                                       Condensation              &condensation,
-                                       const double               tolerance,
-                                       BlockVector               &x) const
+  unsigned int CondensedSolver::gmres(const SaddlePointOperator &matrix,
+                                      Condensation              &condensation,
+                                      const double               tolerance,
+                                      BlockVector               &x) const
   {
     const BlockVector b = matrix.rhs();
     BlockVector       r(b);
     const double      norm_b   = b.l2_norm();
     double            residual = norm_b;
     unsigned int      n        = 0;
-    // The residual that FGMRES carries along can drift from the true one: start again until that one is small.
+    // The residual that GMRES carries along can drift from the true one: start again until that one is small.
     for (unsigned int start = 0; start < 3 && !(residual <= tolerance * norm_b); ++start)
     {
       dealii::SolverControl control(parameters_.maximum_iterations - n, .9 * tolerance * norm_b, false, false);
-      dealii::SolverFGMRES<BlockVector> solver(control, dealii::SolverFGMRES<BlockVector>::AdditionalData(60));
+      // preconditioned from the right: the residual is the true one; a linear preconditioner needs no flexible variant
+      dealii::SolverGMRES<BlockVector> solver(control, dealii::SolverGMRES<BlockVector>::AdditionalData(62, true));
       try
       {
         solver.solve(matrix, x, b, CondensedCycle(condensation, *multigrid_));
@@ -150,7 +151,7 @@ namespace Nodus
   {
     x = 0.;
     if (!matrix.symmetric())
-      return fgmres(matrix, condensation, tolerance, x);
+      return gmres(matrix, condensation, tolerance, x);
     const BlockVector b = matrix.rhs();
     Vector            rhs, y;
     condensation.condense(b, rhs);
@@ -172,7 +173,7 @@ namespace Nodus
     }
     catch (const NotCondensable &)
     {
-      return block_solver_.solve(system, solution, relative_tolerance);
+      return BlockSolver(parameters_, rigid_body_data_).solve(system, solution, relative_tolerance);
     }
     const BlockVector b = matrix.rhs();
     BlockVector       x, r;

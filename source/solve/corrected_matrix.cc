@@ -1,152 +1,75 @@
 #include <nodus/solve/corrected_matrix.h>
 
-#include <Epetra_CrsMatrix.h>
-#include <Epetra_MpiComm.h>
-#include <Epetra_Vector.h>
-
 #include <algorithm>
 
 namespace Nodus
 {
+  namespace
+  {
+    std::vector<DoFIndex> columns(const std::vector<MatrixEntry> &entries)
+    {
+      std::vector<DoFIndex> nodes;
+      nodes.reserve(entries.size());
+      for (const MatrixEntry &e : entries)
+        nodes.push_back(e.column / dim);
+      return nodes;
+    }
+  } // namespace
+
   CorrectedMatrix::CorrectedMatrix(const NodeMatrix               &K,
                                    std::vector<char>               taken_out,
                                    const std::vector<MatrixEntry> &correction)
-      : Epetra_BasicRowMatrix(Epetra_MpiComm(K.map().communicator()))
-      , K_(K)
-      , taken_out_(std::move(taken_out))
-      , takes_out_(std::find(taken_out_.begin(), taken_out_.end(), 1) != taken_out_.end())
+      : taken_out_(std::move(taken_out))
+      , nodes_(K.map(), columns(correction))
+      , pattern_(K.pattern())
+      , stiffness_(K.values().begin(), K.values().end())
   {
-    const NodeMap    &nodes   = K.map();
-    const Epetra_Map &row_map = nodes.row_map();
-    E_                        = make_matrix(correction, row_map, row_map);
+    for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
+      for (std::size_t k = pattern_->start[i]; k < pattern_->start[i + 1]; ++k)
+        if (taken_out_[i] || taken_out_[pattern_->column[k]])
+          std::fill_n(stiffness_.begin() + 9 * k, 9, 0.F);
 
-    // columns: owned, then the ghosts of K and of E in ascending order, so that those of one rank follow each other
-    const int        n_owned = row_map.NumMyElements();
-    std::vector<int> columns(row_map.MyGlobalElements(), row_map.MyGlobalElements() + n_owned);
-    for (unsigned int i = nodes.n_owned(); i < nodes.size(); ++i)
-      for (unsigned int c = 0; c < dim; ++c)
-        columns.push_back(dim * nodes.global(i) + c);
-    for (int k = 0; k < E_->ColMap().NumMyElements(); ++k)
-      if (!row_map.MyGID(E_->GCID(k)))
-        columns.push_back(E_->GCID(k));
-    std::sort(columns.begin() + n_owned, columns.end());
-    columns.erase(std::unique(columns.begin() + n_owned, columns.end()), columns.end());
-    const Epetra_Map column_map(-1, static_cast<int>(columns.size()), columns.data(), 0, row_map.Comm());
-    SetMaps(row_map, column_map);
-
-    for (unsigned int i = nodes.n_owned(); i < nodes.size(); ++i)
-      for (unsigned int c = 0; c < dim; ++c)
-        column_of_ghost_.push_back(column_map.LID(static_cast<int>(dim * nodes.global(i) + c)));
-    for (int k = 0; k < E_->ColMap().NumMyElements(); ++k)
-      E_column_.push_back(column_map.LID(E_->GCID(k)));
-    kept_.resize(n_owned);
-    position_.assign(columns.size(), -1);
-    length_.assign(n_owned, 0);
-    for (int row = 0; row < n_owned; ++row)
-      for_row(row, [&](const int, const double) { ++length_[row]; });
-  }
-
-  template <typename Function>
-  void CorrectedMatrix::for_row(const int row, const Function &f) const
-  {
-    const unsigned int i = row / dim, c = row % dim, n_owned = K_.map().n_owned();
-    int                E_length;
-    double            *E_values;
-    int               *E_columns;
-    E_->ExtractMyRowView(row, E_length, E_values, E_columns);
-    for (int k = 0; k < E_length; ++k)
-      position_[E_column_[E_columns[k]]] = k;
-
-    // entries of K take along what E adds to them
-    bool diagonal = false;
-    if (!taken_out_[row])
-      K_.for_row(i,
-                 [&](const unsigned int j, const double *block, const bool transposed)
-                 {
-                   for (unsigned int d = 0; d < dim; ++d)
-                   {
-                     if (taken_out_[dim * j + d])
-                       continue;
-                     const int column = j < n_owned ? dim * j + d : column_of_ghost_[dim * (j - n_owned) + d];
-                     double    value  = block[transposed ? dim * d + c : dim * c + d];
-                     if (position_[column] >= 0)
-                     {
-                       value += E_values[position_[column]];
-                       position_[column] = -1;
-                     }
-                     if (value != 0. || column == row)
-                       f(column, value);
-                     diagonal = diagonal || column == row;
-                   }
-                 });
-    for (int k = 0; k < E_length; ++k)
-      if (const int column = E_column_[E_columns[k]]; position_[column] >= 0)
-      {
-        position_[column] = -1;
-        f(column, E_values[k]);
-        diagonal = diagonal || column == row;
-      }
-    if (!diagonal)
-      f(row, 0.);
-  }
-
-  int CorrectedMatrix::Multiply(const bool, const Epetra_MultiVector &x, Epetra_MultiVector &y) const
-  {
-    const int           n     = kept_.size();
-    const double *const x_all = x[0];
-    double *const       y_all = y[0];
-    if (takes_out_)
+    start_.assign(nodes_.n_owned() + 1, 0);
+    for (auto entry = correction.begin(); entry != correction.end();)
     {
-      for (int i = 0; i < n; ++i)
-        kept_[i] = taken_out_[i] ? 0. : x_all[i];
-      K_.vmult(y_all, kept_.data());
-      for (int i = 0; i < n; ++i)
-        if (taken_out_[i])
-          y_all[i] = 0.;
+      const DoFIndex node = entry->row / dim;
+      const auto     last =
+          std::find_if(entry, correction.end(), [&](const MatrixEntry &e) { return e.row / dim != node; });
+      const unsigned int i     = nodes_.local(node);
+      const std::size_t  first = column_.size();
+      for (auto e = entry; e != last; ++e)
+        column_.push_back(nodes_.local(e->column / dim));
+      std::sort(column_.begin() + first, column_.end());
+      column_.erase(std::unique(column_.begin() + first, column_.end()), column_.end());
+      values_.resize(9 * column_.size(), 0.);
+      for (auto e = entry; e != last; ++e)
+      {
+        const auto found = std::lower_bound(column_.begin() + first, column_.end(), nodes_.local(e->column / dim));
+        values_[9 * (found - column_.begin()) + dim * (e->row % dim) + e->column % dim] += e->value;
+      }
+      start_[i + 1] = column_.size() - first;
+      rows_.push_back(i);
+      entry = last;
     }
-    else
-      K_.vmult(y_all, x_all);
-    Epetra_MultiVector part(y.Map(), 1, false);
-    const int          error = E_->Multiply(false, x, part);
-    y.Update(1., part, 1.);
-    return error;
+    for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
+      start_[i + 1] += start_[i];
   }
 
-  int CorrectedMatrix::ExtractMyRowCopy(const int row, const int length, int &n, double *values, int *columns) const
+  void CorrectedMatrix::vmult(double *const y, const double *const x_owned) const
   {
-    n = length_[row];
-    if (n > length)
-      return -1;
-    int k = 0;
-    for_row(row,
-            [&](const int column, const double value)
-            {
-              columns[k]  = column;
-              values[k++] = value;
-            });
-    return 0;
-  }
-
-  int CorrectedMatrix::NumMyRowEntries(const int row, int &n) const
-  {
-    n = length_[row];
-    return 0;
-  }
-
-  int CorrectedMatrix::MaxNumEntries() const
-  {
-    return length_.empty() ? 0 : *std::max_element(length_.begin(), length_.end());
-  }
-
-  int CorrectedMatrix::ExtractDiagonalCopy(Epetra_Vector &diagonal) const
-  {
-    for (int row = 0; row < diagonal.MyLength(); ++row)
-      for_row(row,
-              [&](const int column, const double value)
-              {
-                if (column == row)
-                  diagonal[row] = value;
-              });
-    return 0;
+    const double *const x = nodes_.with_ghosts(x_owned);
+    pattern_->vmult(stiffness_.data(), y, x);
+    for (const unsigned int i : rows_)
+    {
+      double       *yi = y + dim * i;
+      const double *a  = values_.data() + 9 * std::size_t(start_[i]);
+      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k, a += 9)
+      {
+        const double *xj = x + dim * column_[k];
+        yi[0] += a[0] * xj[0] + a[1] * xj[1] + a[2] * xj[2];
+        yi[1] += a[3] * xj[0] + a[4] * xj[1] + a[5] * xj[2];
+        yi[2] += a[6] * xj[0] + a[7] * xj[1] + a[8] * xj[2];
+      }
+    }
   }
 } // namespace Nodus

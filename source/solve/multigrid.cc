@@ -2,11 +2,14 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <Eigen/Eigenvalues>
 #include <Epetra_MultiVector.h>
 #include <Teuchos_ParameterList.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace Nodus
 {
@@ -47,9 +50,22 @@ namespace Nodus
     return modes;
   }
 
-  Multigrid::Multigrid(const Epetra_RowMatrix &matrix, std::vector<double> modes, const unsigned int smoother_sweeps)
-      : modes_(std::move(modes))
+  Multigrid::Multigrid(const NodeMatrix          &K,
+                       const CorrectedMatrix     &A,
+                       const std::vector<double> &modes,
+                       const unsigned int         smoother_sweeps)
+      : A_(A)
+      , sweeps_(smoother_sweeps)
   {
+    const unsigned int n = dim * A.map().n_owned();
+    for (auto *v : {&residual_, &update_, &product_})
+      v->resize(n);
+    make_diagonal(K);
+    largest_eigenvalue_ = largest_eigenvalue();
+    coarse_             = std::make_unique<Aggregation>(K, A, modes, D_inverse_, 4. / 3. / largest_eigenvalue_);
+    coarse_residual_    = std::make_unique<Epetra_MultiVector>(coarse_->matrix().RowMap(), 1);
+    coarse_correction_  = std::make_unique<Epetra_MultiVector>(coarse_->matrix().RowMap(), 1);
+
     using AMG = dealii::TrilinosWrappers::PreconditionAMG;
     AMG::AdditionalData data;
     data.elliptic              = true;
@@ -57,12 +73,108 @@ namespace Nodus
     data.aggregation_threshold = 0.;
     Teuchos::ParameterList              parameters;
     std::unique_ptr<Epetra_MultiVector> unused;
-    data.set_parameters(parameters, unused, matrix);
-    parameters.set("PDE equations", 3);
+    data.set_parameters(parameters, unused, coarse_->matrix());
+    parameters.set("PDE equations", static_cast<int>(Aggregation::n_modes));
     parameters.set("null space: type", "pre-computed");
-    parameters.set("null space: dimension", 6);
-    parameters.set("null space: vectors", const_cast<double *>(modes_.data()));
+    parameters.set("null space: dimension", static_cast<int>(Aggregation::n_modes));
+    parameters.set("null space: vectors", const_cast<double *>(coarse_->modes().data()));
     parameters.set("null space: add default vectors", false);
-    multigrid_.initialize(matrix, parameters);
+    ml_.initialize(coarse_->matrix(), parameters);
+  }
+
+  void Multigrid::make_diagonal(const NodeMatrix &K)
+  {
+    using Matrix3 = Eigen::Matrix3d;
+    D_inverse_.resize(A_.map().n_owned());
+    for (unsigned int i = 0; i < D_inverse_.size(); ++i)
+    {
+      Matrix3 D = Matrix3::Zero();
+      A_.for_row(K,
+                 i,
+                 [&](const unsigned int j, const double *block, const bool)
+                 {
+                   if (j == i)
+                     D += Eigen::Map<const Matrix3>(block);
+                 });
+      // an indefinite tangent must not make the smoother indefinite
+      const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(D);
+      Eigen::Vector3d                              inverse = eigen.eigenvalues().cwiseAbs();
+      const double                                 largest = inverse.maxCoeff();
+      for (unsigned int c = 0; c < dim; ++c)
+        inverse[c] = inverse[c] > 1e-12 * largest ? 1. / inverse[c] : 0.;
+      Eigen::Map<Matrix3>(D_inverse_[i].data()) =
+          eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+    }
+  }
+
+  void Multigrid::apply_diagonal(double *const dst, const double *const src) const
+  {
+    for (unsigned int i = 0; i < D_inverse_.size(); ++i)
+      for (unsigned int c = 0; c < dim; ++c)
+        dst[dim * i + c] = D_inverse_[i][dim * c] * src[dim * i] + D_inverse_[i][dim * c + 1] * src[dim * i + 1] +
+                           D_inverse_[i][dim * c + 2] * src[dim * i + 2];
+  }
+
+  double Multigrid::largest_eigenvalue() const
+  {
+    const MPI_Comm comm = A_.map().communicator();
+    const auto     norm = [&](const std::vector<double> &v)
+    { return std::sqrt(dealii::Utilities::MPI::sum(std::inner_product(v.begin(), v.end(), v.begin(), 0.), comm)); };
+    // a rough vector that does not depend on the number of ranks
+    for (unsigned int i = 0; i < update_.size(); ++i)
+      update_[i] = std::sin(12.9898 * (dim * A_.map().global(i / dim) + i % dim + 1.));
+    double length = norm(update_);
+    for (unsigned int iteration = 0; iteration < 12 && length > 0.; ++iteration)
+    {
+      for (double &value : update_)
+        value /= length;
+      A_.vmult(product_.data(), update_.data());
+      apply_diagonal(update_.data(), product_.data());
+      length = norm(update_);
+    }
+    return length > 0. ? 1.1 * length : 1.;
+  }
+
+  void Multigrid::smooth(double *const x, double *const r, const bool last) const
+  {
+    const unsigned int n     = update_.size();
+    const double       upper = largest_eigenvalue_, lower = upper / 15.;
+    const double       theta = .5 * (upper + lower), delta = .5 * (upper - lower), sigma = theta / delta;
+    double             rho = 1. / sigma;
+    for (unsigned int sweep = 0; sweep < sweeps_; ++sweep)
+    {
+      apply_diagonal(product_.data(), r);
+      const double next = 1. / (2. * sigma - rho), factor = sweep == 0 ? 1. / theta : 2. * next / delta,
+                   momentum = sweep == 0 ? 0. : next * rho;
+      if (sweep > 0)
+        rho = next;
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        update_[i] = momentum * update_[i] + factor * product_[i];
+        x[i] += update_[i];
+      }
+      if (last && sweep + 1 == sweeps_)
+        return;
+      A_.vmult(product_.data(), update_.data());
+      for (unsigned int i = 0; i < n; ++i)
+        r[i] -= product_[i];
+    }
+  }
+
+  void Multigrid::vmult(Vector &dst, const Vector &src) const
+  {
+    double *const       x = dst.trilinos_vector()[0];
+    const double *const b = src.trilinos_vector()[0];
+    const unsigned int  n = residual_.size();
+    std::copy_n(b, n, residual_.begin());
+    std::fill_n(x, n, 0.);
+    smooth(x, residual_.data(), false);
+    coarse_->restrict_to(*coarse_residual_, residual_.data());
+    ml_.trilinos_operator().ApplyInverse(*coarse_residual_, *coarse_correction_);
+    coarse_->add_prolongation(x, *coarse_correction_);
+    A_.vmult(product_.data(), x);
+    for (unsigned int i = 0; i < n; ++i)
+      residual_[i] = b[i] - product_[i];
+    smooth(x, residual_.data(), true);
   }
 } // namespace Nodus

@@ -1,33 +1,67 @@
 #include <nodus/solve/node_matrix.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/mpi.templates.h>
 
 #include <Epetra_MpiComm.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace Nodus
 {
+  namespace
+  {
+    void make_unique_ascending(std::vector<DoFIndex> &indices)
+    {
+      std::sort(indices.begin(), indices.end());
+      indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+    }
+  } // namespace
+
   NodeMap::NodeMap(const dealii::IndexSet &owned, std::vector<DoFIndex> ghosts, const MPI_Comm communicator)
       : communicator_(communicator)
+      , start_(1, 0)
       , first_(owned.n_elements() > 0 ? *owned.begin() / dim : 0)
       , n_owned_(owned.n_elements() / dim)
       , ghosts_(std::move(ghosts))
   {
-    std::sort(ghosts_.begin(), ghosts_.end());
-    ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end()), ghosts_.end());
+    make_unique_ascending(ghosts_);
+    n_base_ghosts_ = ghosts_.size();
+    for (const unsigned int n : dealii::Utilities::MPI::all_gather(communicator, n_owned_))
+      start_.push_back(start_.back() + n);
+    make_maps();
+  }
 
-    const Epetra_MpiComm comm(communicator);
+  NodeMap::NodeMap(const NodeMap &base, std::vector<DoFIndex> ghosts)
+      : communicator_(base.communicator_)
+      , start_(base.start_)
+      , first_(base.first_)
+      , n_owned_(base.n_owned_)
+      , n_base_ghosts_(base.ghosts_.size())
+      , ghosts_(base.ghosts_)
+  {
+    make_unique_ascending(ghosts);
+    for (const DoFIndex node : ghosts)
+      if (base.local(node) == dealii::numbers::invalid_unsigned_int)
+        ghosts_.push_back(node);
+    make_maps();
+  }
+
+  void NodeMap::make_maps()
+  {
+    const Epetra_MpiComm comm(communicator_);
     std::vector<int>     columns;
+    columns.reserve(dim * size());
     for (unsigned int i = 0; i < size(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
         columns.push_back(dim * global(i) + c);
-    const int n = owned.size();
-    row_map_    = std::make_unique<Epetra_Map>(n, static_cast<int>(dim * n_owned_), 0, comm);
+    row_map_ =
+        std::make_unique<Epetra_Map>(static_cast<int>(dim * start_.back()), static_cast<int>(dim * n_owned_), 0, comm);
     column_map_ = std::make_unique<Epetra_Map>(-1, static_cast<int>(columns.size()), columns.data(), 0, comm);
-    if (dealii::Utilities::MPI::max(ghosts_.empty() ? 0 : 1, communicator) != 0)
+    if (dealii::Utilities::MPI::max(ghosts_.empty() ? 0 : 1, communicator_) != 0)
     {
       import_ = std::make_unique<Epetra_Import>(*column_map_, *row_map_);
       values_ = std::make_unique<Epetra_MultiVector>(*column_map_, 1, false);
@@ -38,9 +72,30 @@ namespace Nodus
   {
     if (node >= first_ && node < first_ + n_owned_)
       return node - first_;
-    const auto ghost = std::lower_bound(ghosts_.begin(), ghosts_.end(), node);
+    const auto middle = ghosts_.begin() + n_base_ghosts_;
+    auto       ghost  = std::lower_bound(ghosts_.begin(), middle, node);
+    if (ghost == middle || *ghost != node)
+      ghost = std::lower_bound(middle, ghosts_.end(), node);
     return ghost != ghosts_.end() && *ghost == node ? n_owned_ + (ghost - ghosts_.begin())
                                                     : dealii::numbers::invalid_unsigned_int;
+  }
+
+  std::map<DoFIndex, std::vector<double>>
+  NodeMap::ask(const std::vector<DoFIndex> &nodes, const std::function<std::vector<double>(unsigned int)> &answer) const
+  {
+    using dealii::Utilities::MPI::some_to_some;
+    std::map<unsigned int, std::vector<DoFIndex>> questions;
+    for (const DoFIndex node : nodes)
+      questions[std::upper_bound(start_.begin(), start_.end(), node) - start_.begin() - 1].push_back(node);
+    std::map<unsigned int, std::vector<std::vector<double>>> answers;
+    for (const auto &[rank, asked] : some_to_some(communicator_, questions))
+      for (const DoFIndex node : asked)
+        answers[rank].push_back(answer(local(node)));
+    std::map<DoFIndex, std::vector<double>> result;
+    for (auto &[rank, received] : some_to_some(communicator_, answers))
+      for (unsigned int k = 0; k < received.size(); ++k)
+        result[questions[rank][k]] = received[k];
+    return result;
   }
 
   const double *NodeMap::with_ghosts(const double *owned) const
@@ -70,10 +125,10 @@ namespace Nodus
       for (unsigned int a = 0; a < n; ++a)
         cells[next[cell_nodes[c * n + a]]++] = c;
 
-    start_.assign(1, 0);
-    ghosts_.clear();
-    column_.clear();
-    std::vector<std::uint32_t> row, lower_length(n_owned + 1, 0);
+    auto         pattern = std::make_shared<NodePattern>();
+    NodePattern &p       = *pattern;
+    p.start.assign(1, 0);
+    std::vector<std::uint32_t> row, lower_length(map_->size() + 1, 0);
     for (unsigned int i = 0; i < n_owned; ++i)
     {
       row.assign(1, i);
@@ -83,25 +138,26 @@ namespace Nodus
             row.push_back(j);
       std::sort(row.begin(), row.end());
       row.erase(std::unique(row.begin(), row.end()), row.end());
-      ghosts_.push_back(start_.back() + (std::lower_bound(row.begin(), row.end(), n_owned) - row.begin()));
-      column_.insert(column_.end(), row.begin(), row.end());
-      start_.push_back(column_.size());
-      for (std::uint32_t k = start_[i] + 1; k < ghosts_[i]; ++k)
-        ++lower_length[column_[k] + 1];
+      p.ghosts.push_back(p.start.back() + (std::lower_bound(row.begin(), row.end(), n_owned) - row.begin()));
+      p.column.insert(p.column.end(), row.begin(), row.end());
+      p.start.push_back(p.column.size());
+      for (std::uint32_t k = p.start[i] + 1; k < p.start[i + 1]; ++k)
+        ++lower_length[p.column[k] + 1];
     }
-    column_.shrink_to_fit();
-    if (column_.size() >= std::numeric_limits<std::uint32_t>::max() / 2)
+    p.column.shrink_to_fit();
+    if (p.column.size() >= std::numeric_limits<std::uint32_t>::max() / 2)
       throw SolverFailure("too many couplings for one process: use more processes");
 
-    lower_start_.assign(lower_length.begin(), lower_length.end());
-    for (unsigned int i = 0; i < n_owned; ++i)
-      lower_start_[i + 1] += lower_start_[i];
-    lower_.resize(lower_start_[n_owned]);
-    next.assign(lower_start_.begin(), lower_start_.end());
+    p.lower_start.assign(lower_length.begin(), lower_length.end());
+    for (unsigned int i = 0; i < map_->size(); ++i)
+      p.lower_start[i + 1] += p.lower_start[i];
+    p.lower.resize(p.lower_start.back());
+    next.assign(p.lower_start.begin(), p.lower_start.end());
     for (std::uint32_t i = 0; i < n_owned; ++i)
-      for (std::uint32_t k = start_[i] + 1; k < ghosts_[i]; ++k)
-        lower_[next[column_[k]]++] = {i, k};
-    values_.assign(9 * column_.size(), 0.);
+      for (std::uint32_t k = p.start[i] + 1; k < p.start[i + 1]; ++k)
+        p.lower[next[p.column[k]]++] = {i, k};
+    values_.assign(9 * p.column.size() + 3, 0.);
+    pattern_ = std::move(pattern);
   }
 
   void NodeMatrix::set_zero()
@@ -114,8 +170,9 @@ namespace Nodus
     const unsigned int n_owned = map_->n_owned(), row = std::min(i, j), column = std::max(i, j);
     if (row >= n_owned)
       return Position();
-    const auto found = std::lower_bound(column_.begin() + start_[row], column_.begin() + start_[row + 1], column);
-    return Position(found - column_.begin(), i > j);
+    const auto first = pattern_->column.begin();
+    return Position(std::lower_bound(first + pattern_->start[row], first + pattern_->start[row + 1], column) - first,
+                    i > j);
   }
 
   bool NodeMatrix::decoupled(const unsigned int dof) const
@@ -131,43 +188,90 @@ namespace Nodus
     return zero;
   }
 
-  void NodeMatrix::vmult(double *const y, const double *const x_owned) const
+  template <typename Number>
+  void NodePattern::vmult(const Number *a, double *const y, const double *const x) const
   {
-    const double *const x       = map_->with_ghosts(x_owned);
-    const unsigned int  n_owned = map_->n_owned();
+    // Rows of a block in vectors of four, the last of which is of the next row: x is zero there.
+    typedef double Lanes __attribute__((vector_size(32)));
+    typedef Number Stored __attribute__((vector_size(4 * sizeof(Number))));
+    const auto     row = [](const Number *values)
+    {
+      Stored stored;
+      std::memcpy(&stored, values, sizeof(Stored));
+      return __builtin_convertvector(stored, Lanes);
+    };
+    const unsigned int n_owned = ghosts.size();
     std::fill_n(y, dim * n_owned, 0.);
-    const double        *a      = values_.data();
-    const std::uint32_t *column = column_.data();
     for (unsigned int i = 0; i < n_owned; ++i)
     {
-      const double  x0 = x[3 * i], x1 = x[3 * i + 1], x2 = x[3 * i + 2];
-      double        y0 = a[0] * x0 + a[1] * x1 + a[2] * x2;
-      double        y1 = a[3] * x0 + a[4] * x1 + a[5] * x2;
-      double        y2 = a[6] * x0 + a[7] * x1 + a[8] * x2;
-      std::uint32_t k  = start_[i] + 1;
-      a += 9;
-      for (; k < ghosts_[i]; ++k, a += 9)
+      const double *const xi = x + 3 * i;
+      const Lanes         x0 = xi[0] - Lanes{}, x1 = xi[1] - Lanes{}, x2 = xi[2] - Lanes{};
+      Lanes               sum[3] = {};
+      const auto          add    = [&](const std::uint32_t j, const bool both)
       {
-        const double *const xj = x + 3 * column[k];
-        double *const       yj = y + 3 * column[k];
-        y0 += a[0] * xj[0] + a[1] * xj[1] + a[2] * xj[2];
-        y1 += a[3] * xj[0] + a[4] * xj[1] + a[5] * xj[2];
-        y2 += a[6] * xj[0] + a[7] * xj[1] + a[8] * xj[2];
-        yj[0] += a[0] * x0 + a[3] * x1 + a[6] * x2;
-        yj[1] += a[1] * x0 + a[4] * x1 + a[7] * x2;
-        yj[2] += a[2] * x0 + a[5] * x1 + a[8] * x2;
-      }
-      for (; k < start_[i + 1]; ++k, a += 9)
-      {
-        const double *const xj = x + 3 * column[k];
-        y0 += a[0] * xj[0] + a[1] * xj[1] + a[2] * xj[2];
-        y1 += a[3] * xj[0] + a[4] * xj[1] + a[5] * xj[2];
-        y2 += a[6] * xj[0] + a[7] * xj[1] + a[8] * xj[2];
-      }
-      y[3 * i] += y0;
-      y[3 * i + 1] += y1;
-      y[3 * i + 2] += y2;
+        const Lanes xj = {x[3 * j], x[3 * j + 1], x[3 * j + 2], 0.};
+        const Lanes a0 = row(a), a1 = row(a + 3), a2 = row(a + 6);
+        sum[0] += a0 * xj;
+        sum[1] += a1 * xj;
+        sum[2] += a2 * xj;
+        if (both)
+        {
+          const Lanes part = a0 * x0 + a1 * x1 + a2 * x2;
+          y[3 * j] += part[0];
+          y[3 * j + 1] += part[1];
+          y[3 * j + 2] += part[2];
+        }
+        a += 9;
+      };
+      std::uint32_t k = start[i];
+      add(column[k++], false);
+      for (; k < ghosts[i]; ++k)
+        add(column[k], true);
+      for (; k < start[i + 1]; ++k)
+        add(column[k], false);
+      for (unsigned int c = 0; c < dim; ++c)
+        y[3 * i + c] += sum[c][0] + sum[c][1] + sum[c][2];
     }
+  }
+  template void NodePattern::vmult(const double *, double *, const double *) const;
+  template void NodePattern::vmult(const float *, double *, const double *) const;
+
+  namespace
+  {
+    void add_product(double *y, const double *a, const bool transposed, const double *x)
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int d = 0; d < dim; ++d)
+          y[c] += (transposed ? a[dim * d + c] : a[dim * c + d]) * x[d];
+    }
+  } // namespace
+
+  void NodeMatrix::vmult_columns(double *y, const double *x_owned, const std::vector<unsigned int> &nodes) const
+  {
+    const double *const x = map_->with_ghosts(x_owned);
+    std::fill_n(y, dim * map_->n_owned(), 0.);
+    const NodePattern &p = *pattern_;
+    for (const unsigned int j : nodes)
+    {
+      for (std::uint32_t k = p.lower_start[j]; k < p.lower_start[j + 1]; ++k)
+        add_product(y + dim * p.lower[k].row, &values_[9 * std::size_t(p.lower[k].block)], false, x + dim * j);
+      if (j < map_->n_owned())
+        for (std::uint32_t k = p.start[j]; k < p.ghosts[j]; ++k)
+          add_product(y + dim * p.column[k], &values_[9 * std::size_t(k)], true, x + dim * j);
+    }
+  }
+
+  void NodeMatrix::vmult_rows(double *y, const double *x_owned, const std::vector<unsigned int> &nodes) const
+  {
+    const double *const x = map_->with_ghosts(x_owned);
+    for (const unsigned int i : nodes)
+      if (i < map_->n_owned())
+      {
+        std::fill_n(y + dim * i, dim, 0.);
+        for_row(i,
+                [&](const unsigned int j, const double *block, const bool transposed)
+                { add_product(y + dim * i, block, transposed, x + dim * j); });
+      }
   }
 
   std::vector<double> NodeMatrix::diagonal() const
@@ -188,21 +292,24 @@ namespace Nodus
 
   double NodeMatrix::norm_squared() const
   {
-    double sum = 0.;
+    double             sum = 0.;
+    const NodePattern &p   = *pattern_;
     for (unsigned int i = 0; i < map_->n_owned(); ++i)
-      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+      for (std::uint32_t k = p.start[i]; k < p.start[i + 1]; ++k)
       {
         double square = 0.;
         for (unsigned int l = 0; l < 9; ++l)
           square += values_[9 * std::size_t(k) + l] * values_[9 * std::size_t(k) + l];
-        sum += k > start_[i] && k < ghosts_[i] ? 2. * square : square;
+        sum += k > p.start[i] && k < p.ghosts[i] ? 2. * square : square;
       }
     return dealii::Utilities::MPI::sum(sum, map_->communicator());
   }
 
   std::size_t NodeMatrix::memory_consumption() const
   {
-    return sizeof(std::uint32_t) * (start_.size() + ghosts_.size() + column_.size() + lower_start_.size()) +
-           sizeof(Lower) * lower_.size() + sizeof(double) * values_.size();
+    const NodePattern &p = *pattern_;
+    return sizeof(std::uint32_t) *
+               (p.start.size() + p.ghosts.size() + p.column.size() + p.lower_start.size() + 2 * p.lower.size()) +
+           sizeof(double) * values_.size();
   }
 } // namespace Nodus

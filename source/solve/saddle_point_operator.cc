@@ -222,6 +222,11 @@ namespace Nodus
   void SaddlePointOperator::apply_stiffness(const Epetra_MultiVector &u, Epetra_MultiVector &f) const
   {
     bulk().vmult(f[0], u[0]);
+    add_coupling(u, f);
+  }
+
+  void SaddlePointOperator::add_coupling(const Epetra_MultiVector &u, Epetra_MultiVector &f) const
+  {
     if (C_uu_)
     {
       Epetra_MultiVector part(f.Map(), 1, false);

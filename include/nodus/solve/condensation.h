@@ -47,8 +47,8 @@ namespace Nodus
     /// Displacements and multipliers @p x that belong to the solution @p y.
     void expand(const Vector &y, const BlockVector &b, BlockVector &x) const;
 
-    /// T^T A T in the form that multigrid takes: the degrees of freedom of K that T replaces (of all local nodes), and
-    /// what comes in their place. Friction enters by its part along the rows of B. Collective.
+    /// T^T A T in the form that multigrid takes: the local nodes of K that T replaces, and what comes in
+    /// their place. Friction enters by its part along the rows of B. Collective.
     const std::vector<char> &taken_out() const
     {
       return taken_out_;
@@ -96,16 +96,12 @@ namespace Nodus
     void fetch_ghost_rows();
     void make_transformation();
     /// Inverse of the first @p n constraint rows along the basis, in a matrix that is zero beyond.
-    Matrix3      constraint_inverse(const Site &site, unsigned int n) const;
-    unsigned int owner(DoFIndex node) const;
-    /// Asks the owners of @p nodes for numbers about them. Collective.
-    std::map<DoFIndex, std::vector<double>> ask(const std::vector<DoFIndex>                            &nodes,
-                                                const std::function<std::vector<double>(unsigned int)> &answer) const;
+    Matrix3 constraint_inverse(const Site &site, unsigned int n) const;
     /// Solves for the constraint displacements (transposed: forces) of the cluster, in place per site and direction.
     void solve_cluster(std::vector<Eigen::Vector3d> &values, bool transposed) const;
 
-    void apply_stiffness(Epetra_MultiVector &m) const; ///< m = D m
-    void apply_matrix(const Epetra_MultiVector &u, Epetra_MultiVector &f) const;
+    void apply_stiffness(Epetra_MultiVector &m) const;                          ///< m = D m
+    void add_springs(const Epetra_MultiVector &u, Epetra_MultiVector &f) const; ///< f += B^T D B u
     void apply_transformation(const Epetra_MultiVector &y, Epetra_MultiVector &u) const;
     void apply_transposed(const Epetra_MultiVector &f, Epetra_MultiVector &y) const;
 
@@ -115,6 +111,7 @@ namespace Nodus
     std::vector<std::unique_ptr<Row>>            rows_;  ///< by local node; null where T is the identity
     std::unique_ptr<ConstraintCluster>           cluster_;
     std::vector<char>                            taken_out_;
+    std::vector<unsigned int>                    replaced_;   ///< local nodes that are taken out
     std::vector<std::pair<unsigned int, double>> eliminated_; ///< owned unknowns without meaning, and a diagonal
     std::unique_ptr<Epetra_CrsMatrix>            T_;          ///< rows that are not those of the identity
     Vector                                       particular_; ///< u_g

@@ -1,8 +1,8 @@
 #ifndef nodus_solve_condensed_solver_h
 #define nodus_solve_condensed_solver_h
 
-#include <nodus/solve/block_solver.h>
 #include <nodus/solve/corrected_matrix.h>
+#include <nodus/solve/linear_solver.h>
 #include <nodus/solve/multigrid.h>
 
 #include <memory>
@@ -13,7 +13,7 @@ namespace Nodus
   class Condensation;
 
   /// Conjugate gradients with multigrid on the displacements that are left when condensation.h has eliminated the
-  /// multipliers; a system with a variation needs FGMRES on all unknowns, with condensation and multigrid as
+  /// multipliers; a system with a variation needs GMRES on all unknowns, with condensation and multigrid as
   /// preconditioner. The hierarchy is kept over several systems while it pays. Systems that cannot be condensed go to
   /// the block solver.
   class CondensedSolver : public LinearSolver
@@ -32,11 +32,10 @@ namespace Nodus
     unsigned int
     conjugate_gradients(const Condensation &condensation, const Vector &rhs, double tolerance, Vector &y) const;
     unsigned int
-    fgmres(const SaddlePointOperator &matrix, Condensation &condensation, double tolerance, BlockVector &x) const;
+    gmres(const SaddlePointOperator &matrix, Condensation &condensation, double tolerance, BlockVector &x) const;
 
     const LinearSolverParameters     parameters_;
     const RigidBodyData              rigid_body_data_;
-    BlockSolver                      block_solver_;
     std::unique_ptr<CorrectedMatrix> matrix_;
     std::unique_ptr<Multigrid>       multigrid_;
     std::vector<char>                signature_; ///< of the system that the hierarchy was made for

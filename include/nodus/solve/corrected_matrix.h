@@ -4,55 +4,54 @@
 #include <nodus/solve/node_matrix.h>
 #include <nodus/solve/saddle_point_operator.h>
 
-#include <Epetra_BasicRowMatrix.h>
-
 #include <memory>
 #include <vector>
 
 namespace Nodus
 {
-  /// A = S K S + E for multigrid: the stiffness K in its own storage, S that takes some degrees of freedom out, and a
-  /// correction E with rows near the contact surfaces only.
-  class CorrectedMatrix : public Epetra_BasicRowMatrix
+  /// A = S K S + E for multigrid: the stiffness K, S that takes some nodes out, and a symmetric correction E of 3x3
+  /// blocks with rows near the contact surfaces only. Products use a copy of S K S in single precision: half the memory
+  /// traffic.
+  class CorrectedMatrix
   {
   public:
-    /// @p K must outlive the matrix. @p taken_out holds a flag per degree of freedom of the local nodes of K, ghosts
-    /// included; @p correction the rows owned here, sorted. Collective.
+    /// @p taken_out holds a flag per local node of K, ghosts included; @p correction the
+    /// rows owned here, sorted. Collective.
     CorrectedMatrix(const NodeMatrix &K, std::vector<char> taken_out, const std::vector<MatrixEntry> &correction);
 
-    int  Multiply(bool transpose, const Epetra_MultiVector &x, Epetra_MultiVector &y) const override;
-    int  ExtractMyRowCopy(int row, int length, int &n, double *values, int *columns) const override;
-    int  NumMyRowEntries(int row, int &n) const override;
-    int  ExtractDiagonalCopy(Epetra_Vector &diagonal) const override;
-    int  MaxNumEntries() const override;
-    bool HasNormInf() const override
+    /// Local numbers of the nodes: those of K, then ghosts of the correction.
+    const NodeMap &map() const
     {
-      return false;
+      return nodes_;
     }
-    /// Not available: the entries are not stored in one place.
-    int ExtractMyEntryView(int, double *&, int &, int &) override
+    /// y = A x over the owned degrees of freedom. Collective.
+    void vmult(double *y, const double *x) const;
+
+    /// Calls f(column node, 3x3 block row by row, transposed) for the blocks of an owned row; those of one column add
+    /// up.
+    /// @p K is the one of the constructor.
+    template <typename Function>
+    void for_row(const NodeMatrix &K, const unsigned int i, const Function &f) const
     {
-      return -1;
-    }
-    int ExtractMyEntryView(int, double const *&, int &, int &) const override
-    {
-      return -1;
+      if (!taken_out_[i])
+        K.for_row(i,
+                  [&](const unsigned int j, const double *block, const bool transposed)
+                  {
+                    if (!taken_out_[j])
+                      f(j, block, transposed);
+                  });
+      for (std::size_t k = start_[i]; k < start_[i + 1]; ++k)
+        f(column_[k], values_.data() + 9 * k, false);
     }
 
   private:
-    /// Calls f(local column, value) for the entries of a row that do not vanish, and the diagonal.
-    template <typename Function>
-    void for_row(int row, const Function &f) const;
-
-    const NodeMatrix                 &K_;
-    const std::vector<char>           taken_out_;
-    bool                              takes_out_;
-    std::vector<int>                  column_of_ghost_; ///< local columns of the ghosts of K, three each
-    std::unique_ptr<Epetra_CrsMatrix> E_;
-    std::vector<int>                  E_column_; ///< local columns of the columns of E
-    std::vector<int>                  length_;   ///< of the rows
-    mutable std::vector<double>       kept_;
-    mutable std::vector<int>          position_; ///< of a column in the row at hand, -1 elsewhere
+    const std::vector<char>                  taken_out_;
+    const NodeMap                            nodes_;
+    const std::shared_ptr<const NodePattern> pattern_;
+    std::vector<float>                       stiffness_; ///< S K S
+    std::vector<unsigned int>                rows_;      ///< of the correction that are not empty
+    std::vector<std::uint32_t>               start_, column_;
+    std::vector<double>                      values_;
   };
 } // namespace Nodus
 

@@ -10,6 +10,8 @@
 #include <Epetra_MultiVector.h>
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -22,6 +24,8 @@ namespace Nodus
   public:
     /// @param owned degrees of freedom, one contiguous range per rank @param ghosts global numbers of nodes, any order
     NodeMap(const dealii::IndexSet &owned, std::vector<DoFIndex> ghosts, MPI_Comm communicator);
+    /// The nodes of @p base under the same local numbers, and more ghosts behind them. Collective.
+    NodeMap(const NodeMap &base, std::vector<DoFIndex> ghosts);
 
     unsigned int n_owned() const
     {
@@ -48,6 +52,9 @@ namespace Nodus
     }
     /// Values at owned nodes and ghosts of a vector over row_map(), three each; valid until the next call. Collective.
     const double *with_ghosts(const double *owned) const;
+    /// Asks the owners of @p nodes (global) for numbers about them; @p answer gets a local number. Collective.
+    std::map<DoFIndex, std::vector<double>> ask(const std::vector<DoFIndex>                            &nodes,
+                                                const std::function<std::vector<double>(unsigned int)> &answer) const;
 
     MPI_Comm communicator() const
     {
@@ -55,13 +62,34 @@ namespace Nodus
     }
 
   private:
+    void make_maps();
+
     MPI_Comm                                    communicator_;
+    std::vector<DoFIndex>                       start_; ///< of each rank's nodes, and the number of all
     DoFIndex                                    first_;
-    unsigned int                                n_owned_;
-    std::vector<DoFIndex>                       ghosts_;
+    unsigned int                                n_owned_, n_base_ghosts_;
+    std::vector<DoFIndex>                       ghosts_; ///< of the base, then the others, either ascending
     std::unique_ptr<Epetra_Map>                 row_map_, column_map_;
     std::unique_ptr<Epetra_Import>              import_; ///< null when no rank has ghosts
     mutable std::unique_ptr<Epetra_MultiVector> values_;
+  };
+
+  /// Where the blocks of a NodeMatrix are.
+  struct NodePattern
+  {
+    struct Lower
+    {
+      std::uint32_t row, block; ///< the block is stored in that row
+    };
+    std::vector<std::uint32_t> start;  ///< of the rows: the diagonal, higher owned nodes, then ghosts
+    std::vector<std::uint32_t> ghosts; ///< where the ghosts of a row start
+    std::vector<std::uint32_t> column;
+    std::vector<std::uint32_t> lower_start; ///< of the columns, those of ghosts included
+    std::vector<Lower>         lower;       ///< blocks of a column in lower rows
+
+    /// y = A x for @p values of 9 per block, row by row, and 3 more; @p x at all local nodes.
+    template <typename Number>
+    void vmult(const Number *values, double *y, const double *x) const;
   };
 
   /// Symmetric matrix of 3x3 blocks between displacement nodes.
@@ -118,26 +146,29 @@ namespace Nodus
     template <typename Function>
     void for_row(const unsigned int i, const Function &f) const
     {
-      for (std::uint32_t k = lower_start_[i]; k < lower_start_[i + 1]; ++k)
-        f(lower_[k].row, values_.data() + 9 * std::size_t(lower_[k].block), true);
-      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
-        f(column_[k], values_.data() + 9 * std::size_t(k), false);
-    }
-    unsigned int row_length(const unsigned int i) const
-    {
-      return lower_start_[i + 1] - lower_start_[i] + start_[i + 1] - start_[i];
+      const NodePattern &p = *pattern_;
+      for (std::uint32_t k = p.lower_start[i]; k < p.lower_start[i + 1]; ++k)
+        f(p.lower[k].row, values_.data() + 9 * std::size_t(p.lower[k].block), true);
+      for (std::uint32_t k = p.start[i]; k < p.start[i + 1]; ++k)
+        f(p.column[k], values_.data() + 9 * std::size_t(k), false);
     }
     /// The diagonal block of an owned node.
     const double *diagonal(const unsigned int i) const
     {
-      return values_.data() + 9 * std::size_t(start_[i]);
+      return values_.data() + 9 * std::size_t(pattern_->start[i]);
     }
     /// True when the row of an owned degree of freedom holds nothing but the diagonal: a constrained one.
     bool decoupled(unsigned int dof) const;
 
     /// y = A x, over the owned degrees of freedom. Collective.
-    void vmult(double *y, const double *x) const;
-
+    void vmult(double *y, const double *x) const
+    {
+      pattern_->vmult(values_.data(), y, map_->with_ghosts(x));
+    }
+    /// y = A x where x vanishes but at the local nodes @p nodes, those among the ghosts included. Collective.
+    void vmult_columns(double *y, const double *x, const std::vector<unsigned int> &nodes) const;
+    /// y = A x at the owned ones among @p nodes; other values of y are not touched. Collective.
+    void vmult_rows(double *y, const double *x, const std::vector<unsigned int> &nodes) const;
     /// Diagonal of the owned degrees of freedom.
     std::vector<double> diagonal() const;
     /// Largest absolute value on the diagonal, over all ranks. Collective.
@@ -148,18 +179,19 @@ namespace Nodus
 
     std::size_t memory_consumption() const;
 
-  private:
-    struct Lower
+    const std::shared_ptr<const NodePattern> &pattern() const
     {
-      std::uint32_t row, block; ///< the block is stored in that row
-    };
-    std::shared_ptr<const NodeMap> map_;
-    std::vector<std::uint32_t>     start_;  ///< of the rows: the diagonal, higher owned nodes, then ghosts
-    std::vector<std::uint32_t>     ghosts_; ///< where the ghosts of a row start
-    std::vector<std::uint32_t>     column_;
-    std::vector<std::uint32_t>     lower_start_;
-    std::vector<Lower>             lower_;  ///< blocks of lower rows
-    std::vector<double>            values_; ///< 9 per block, row by row
+      return pattern_;
+    }
+    const std::vector<double> &values() const
+    {
+      return values_;
+    }
+
+  private:
+    std::shared_ptr<const NodeMap>     map_;
+    std::shared_ptr<const NodePattern> pattern_;
+    std::vector<double>                values_; ///< as NodePattern::vmult() takes them
   };
 } // namespace Nodus
 

@@ -103,6 +103,8 @@ namespace Nodus
     }
     /// f = (bulk + C_uu) u, over the owned displacements.
     void apply_stiffness(const Epetra_MultiVector &u, Epetra_MultiVector &f) const;
+    /// f += C_uu u
+    void add_coupling(const Epetra_MultiVector &u, Epetra_MultiVector &f) const;
     /// C_uu between the components of an owned node.
     Eigen::Matrix3d own_coupling(DoFIndex node) const;
     /// Stiffness that each owned multiplier sees, |B_i|^2 / (B diag(K)^-1 B^T)_ii; 0 for multipliers without coupling.

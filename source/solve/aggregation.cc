@@ -1,0 +1,440 @@
+#include <nodus/solve/aggregation.h>
+#include <nodus/solve/coarse_matrix.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <Epetra_MpiComm.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+namespace Nodus
+{
+  namespace
+  {
+    constexpr unsigned int none    = dealii::numbers::invalid_unsigned_int;
+    constexpr unsigned int n_modes = Aggregation::n_modes;
+
+    // The six modes fill six lanes of a vector of eight; the others hold what comes next in memory, or zero.
+    typedef double Lanes __attribute__((vector_size(64)));
+    typedef float  Stored __attribute__((vector_size(32)));
+
+    /// Three displacements by the six modes.
+    struct Panel
+    {
+      Lanes row[dim];
+    };
+
+    Panel load(const float *block)
+    {
+      Panel panel;
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        Stored stored;
+        std::memcpy(&stored, block + n_modes * c, sizeof(Stored));
+        panel.row[c] = __builtin_convertvector(stored, Lanes);
+      }
+      return panel;
+    }
+
+    /// c += a p
+    void add_product(const double *a, const bool transposed, const Panel &p, Panel &c)
+    {
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int k = 0; k < dim; ++k)
+          c.row[i] += (transposed ? a[dim * k + i] : a[dim * i + k]) * p.row[k];
+    }
+
+    /// sum += block^T p, where the unused lanes of p are zero.
+    void add_transposed_product(const float *block, const Panel &p, CoarseRow::Block &sum)
+    {
+      Lanes row[n_modes];
+      for (unsigned int m = 0; m < n_modes; ++m)
+        std::memcpy(&row[m], sum.data() + n_modes * m, sizeof(Lanes));
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int m = 0; m < n_modes; ++m)
+          row[m] += static_cast<double>(block[n_modes * c + m]) * p.row[c];
+      for (unsigned int m = 0; m < n_modes; ++m) // in this order: each store repairs what the one before spilt over
+        std::memcpy(sum.data() + n_modes * m, &row[m], sizeof(Lanes));
+    }
+
+    /// Sum of panels by column, for one row at a time.
+    class SparseRow
+    {
+    public:
+      void reinit(const unsigned int n_columns)
+      {
+        slot_.assign(n_columns, none);
+        columns_.clear();
+      }
+      Panel &operator[](const unsigned int column)
+      {
+        if (slot_[column] == none)
+        {
+          slot_[column] = columns_.size();
+          columns_.push_back(column);
+          if (panels_.size() < columns_.size())
+            panels_.emplace_back();
+          panels_[slot_[column]] = Panel{};
+        }
+        return panels_[slot_[column]];
+      }
+      const std::vector<unsigned int> &columns() const
+      {
+        return columns_;
+      }
+      /// Of the k-th column, with unused lanes of zero.
+      const Panel &panel(const unsigned int k)
+      {
+        for (Lanes &row : panels_[k].row)
+          for (unsigned int lane = n_modes; lane < 8; ++lane)
+            row[lane] = 0.;
+        return panels_[k];
+      }
+      void clear()
+      {
+        for (const unsigned int column : columns_)
+          slot_[column] = none;
+        columns_.clear();
+      }
+
+    private:
+      std::vector<unsigned int> slot_, columns_;
+      std::vector<Panel>        panels_;
+    };
+  } // namespace
+
+  Aggregation::Aggregation(const NodeMatrix                         &K,
+                           const CorrectedMatrix                    &A,
+                           const std::vector<double>                &modes,
+                           const std::vector<std::array<double, 9>> &D_inverse,
+                           const double                              omega)
+      : nodes_(A.map())
+  {
+    aggregate(K, modes);
+    make_tentative(modes);
+    smooth(K, A, D_inverse, omega);
+    make_coarse_matrix(K, A);
+  }
+
+  /// A node and its neighbours, as long as none of them is taken; the others join a neighbour's aggregate. Bodies do
+  /// not mix: they slide on each other. Nodes without modes are prescribed and stay out.
+  void Aggregation::aggregate(const NodeMatrix &K, const std::vector<double> &modes)
+  {
+    const unsigned int n = nodes_.n_owned();
+    std::vector<char>  moves(n, 0);
+    for (unsigned int m = 0; m < n_modes; ++m)
+      for (unsigned int i = 0; i < dim * n; ++i)
+        if (modes[m * dim * n + i] != 0.)
+          moves[i / dim] = 1;
+
+    aggregate_.assign(n, none);
+    const auto for_neighbours = [&](const unsigned int i, const auto &f)
+    {
+      K.for_row(i,
+                [&](const unsigned int j, const double *, const bool)
+                {
+                  if (j < n && j != i && moves[j])
+                    f(j);
+                });
+    };
+    const auto start = [&](const unsigned int i)
+    {
+      aggregate_[i] = n_aggregates_;
+      for_neighbours(i,
+                     [&](const unsigned int j)
+                     {
+                       if (aggregate_[j] == none)
+                         aggregate_[j] = n_aggregates_;
+                     });
+      ++n_aggregates_;
+    };
+
+    for (unsigned int i = 0; i < n; ++i)
+      if (moves[i] && aggregate_[i] == none)
+      {
+        bool free = true;
+        for_neighbours(i, [&](const unsigned int j) { free = free && aggregate_[j] == none; });
+        if (free)
+          start(i);
+      }
+
+    const unsigned int        n_first = n_aggregates_;
+    std::vector<unsigned int> size(n_first, 0);
+    for (const unsigned int a : aggregate_)
+      if (a != none)
+        ++size[a];
+    std::vector<unsigned int> joined;
+    for (unsigned int i = 0; i < n; ++i)
+      if (moves[i] && aggregate_[i] == none)
+      {
+        unsigned int best = none;
+        for_neighbours(i,
+                       [&](const unsigned int j)
+                       {
+                         const unsigned int a = aggregate_[j];
+                         if (a < n_first && (best == none || size[a] < size[best]))
+                           best = a;
+                       });
+        if (best == none)
+          continue;
+        // not to be seen by the nodes that follow: aggregates would grow long
+        joined.push_back(i);
+        aggregate_[i] = n_first + best;
+        ++size[best];
+      }
+    for (const unsigned int i : joined)
+      aggregate_[i] -= n_first;
+
+    for (unsigned int i = 0; i < n; ++i)
+      if (moves[i] && aggregate_[i] == none)
+        start(i);
+
+    const auto         numbers = dealii::Utilities::MPI::all_gather(nodes_.communicator(), n_aggregates_);
+    const unsigned int rank    = dealii::Utilities::MPI::this_mpi_process(nodes_.communicator());
+    first_                     = std::accumulate(numbers.begin(), numbers.begin() + rank, DoFIndex(0));
+    const DoFIndex total       = std::accumulate(numbers.begin(), numbers.end(), DoFIndex(0));
+    row_map_                   = std::make_unique<Epetra_Map>(static_cast<int>(n_modes * total),
+                                            static_cast<int>(n_modes * n_aggregates_),
+                                            0,
+                                            Epetra_MpiComm(nodes_.communicator()));
+  }
+
+  /// Gram-Schmidt on the modes of each aggregate; what it takes off are the modes in the coarse unknowns.
+  void Aggregation::make_tentative(const std::vector<double> &modes)
+  {
+    const unsigned int                     n = dim * nodes_.n_owned(), n_coarse = n_modes * n_aggregates_;
+    std::vector<std::vector<unsigned int>> dofs(n_aggregates_);
+    for (unsigned int i = 0; i < n; ++i)
+      if (aggregate_[i / dim] != none)
+        dofs[aggregate_[i / dim]].push_back(i);
+    tentative_ = modes;
+    coarse_modes_.assign(std::max(1U, n_modes * n_coarse), 0.);
+    for (unsigned int a = 0; a < n_aggregates_; ++a)
+    {
+      const auto product = [&](const unsigned int k, const unsigned int l)
+      {
+        double sum = 0.;
+        for (const unsigned int i : dofs[a])
+          sum += tentative_[k * n + i] * tentative_[l * n + i];
+        return sum;
+      };
+      for (unsigned int m = 0; m < n_modes; ++m)
+      {
+        const double before = std::sqrt(product(m, m));
+        for (unsigned int pass = 0; pass < 2; ++pass)
+          for (unsigned int k = 0; k < m; ++k)
+          {
+            const double factor = product(k, m);
+            coarse_modes_[m * n_coarse + n_modes * a + k] += factor;
+            for (const unsigned int i : dofs[a])
+              tentative_[m * n + i] -= factor * tentative_[k * n + i];
+          }
+        const double norm = std::sqrt(product(m, m)), scale = norm > 1e-8 * before ? 1. / norm : 0.;
+        for (const unsigned int i : dofs[a])
+          tentative_[m * n + i] *= scale;
+        coarse_modes_[m * n_coarse + n_modes * a + m] = scale > 0. ? norm : 0.;
+      }
+    }
+  }
+
+  void Aggregation::smooth(const NodeMatrix                         &K,
+                           const CorrectedMatrix                    &A,
+                           const std::vector<std::array<double, 9>> &D_inverse,
+                           const double                              omega)
+  {
+    // aggregates and modes at all local nodes
+    const unsigned int n_owned = nodes_.n_owned(), n = nodes_.size();
+    std::vector<Panel> panels(n, Panel{});
+    for (unsigned int m = 0; m < n_modes; ++m)
+    {
+      const double *mode = nodes_.with_ghosts(tentative_.data() + m * dim * n_owned);
+      for (unsigned int i = 0; i < dim * n; ++i)
+        panels[i / dim].row[i % dim][m] = mode[i];
+    }
+    std::vector<double> numbers(dim * n_owned + 1, -1.);
+    for (unsigned int i = 0; i < n_owned; ++i)
+      if (aggregate_[i] != none)
+        numbers[dim * i] = first_ + aggregate_[i];
+    const double *number = nodes_.with_ghosts(numbers.data());
+    for (unsigned int i = n_owned; i < n; ++i)
+      if (number[dim * i] >= 0.)
+        ghosts_.push_back(static_cast<DoFIndex>(number[dim * i]));
+    std::sort(ghosts_.begin(), ghosts_.end());
+    ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end()), ghosts_.end());
+    aggregate_.resize(n, none);
+    for (unsigned int i = n_owned; i < n; ++i)
+      if (number[dim * i] >= 0.)
+        aggregate_[i] =
+            n_aggregates_ + (std::lower_bound(ghosts_.begin(), ghosts_.end(), number[dim * i]) - ghosts_.begin());
+    tentative_ = std::vector<double>();
+
+    SparseRow row;
+    row.reinit(n_aggregates_ + ghosts_.size());
+    start_.assign(1, 0);
+    column_.reserve(5 * n_owned);
+    blocks_.reserve(5 * block_size * n_owned);
+    for (unsigned int i = 0; i < n_owned; ++i)
+    {
+      A.for_row(K,
+                i,
+                [&](const unsigned int j, const double *block, const bool transposed)
+                {
+                  if (aggregate_[j] != none)
+                    add_product(block, transposed, panels[j], row[aggregate_[j]]);
+                });
+      if (aggregate_[i] != none)
+        row[aggregate_[i]];
+      for (unsigned int k = 0; k < row.columns().size(); ++k)
+      {
+        const unsigned int a = row.columns()[k];
+        Panel              p{};
+        add_product(D_inverse[i].data(), false, row.panel(k), p);
+        float block[block_size];
+        for (unsigned int l = 0; l < block_size; ++l)
+          block[l] = (a == aggregate_[i] ? panels[i].row[l / n_modes][l % n_modes] : 0.) -
+                     omega * p.row[l / n_modes][l % n_modes];
+        if (std::all_of(block, block + block_size, [](const float value) { return value == 0.F; }))
+          continue;
+        column_.push_back(a);
+        blocks_.insert(blocks_.end(), block, block + block_size);
+      }
+      row.clear();
+      start_.push_back(column_.size());
+    }
+    column_.shrink_to_fit();
+    blocks_.resize(blocks_.size() + 2, 0.F); // for load()
+    blocks_.shrink_to_fit();
+
+    std::vector<int> columns;
+    for (unsigned int a = 0; a < n_aggregates_ + ghosts_.size(); ++a)
+      for (unsigned int m = 0; m < n_modes; ++m)
+        columns.push_back(n_modes * global_aggregate(a) + m);
+    column_map_ =
+        std::make_unique<Epetra_Map>(-1, static_cast<int>(columns.size()), columns.data(), 0, row_map_->Comm());
+    if (dealii::Utilities::MPI::max(ghosts_.empty() ? 0 : 1, nodes_.communicator()) != 0)
+      import_ = std::make_unique<Epetra_Import>(*column_map_, *row_map_);
+    values_ = std::make_unique<Epetra_MultiVector>(*column_map_, 1);
+  }
+
+  /// Rows of P at the ghosts of A, by global aggregate;
+  std::vector<Aggregation::Row> Aggregation::ghost_rows() const
+  {
+    std::vector<DoFIndex> ghosts;
+    for (unsigned int i = nodes_.n_owned(); i < nodes_.size(); ++i)
+      ghosts.push_back(nodes_.global(i));
+    const auto pack = [&](const unsigned int i)
+    {
+      std::vector<double> numbers;
+      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+      {
+        numbers.push_back(global_aggregate(column_[k]));
+        const float *block = blocks_.data() + block_size * std::size_t(k);
+        numbers.insert(numbers.end(), block, block + block_size);
+      }
+      return numbers;
+    };
+    std::vector<Row> rows(ghosts.size());
+    for (const auto &[node, numbers] : nodes_.ask(ghosts, pack))
+      for (auto p = numbers.begin(); p != numbers.end(); p += block_size)
+      {
+        auto &entry = rows[nodes_.local(node) - nodes_.n_owned()].emplace_back();
+        entry.first = static_cast<DoFIndex>(*p++);
+        std::copy_n(p, block_size, entry.second.begin());
+      }
+    return rows;
+  }
+
+  void Aggregation::make_coarse_matrix(const NodeMatrix &K, const CorrectedMatrix &A)
+  {
+    // columns of A P: aggregates in the rows of P of all local nodes
+    const std::vector<Row> ghost_rows = this->ghost_rows();
+    const unsigned int     n_owned    = nodes_.n_owned();
+    std::vector<DoFIndex>  columns;
+    for (unsigned int a = 0; a < n_aggregates_ + ghosts_.size(); ++a)
+      columns.push_back(global_aggregate(a));
+    std::vector<DoFIndex> others;
+    for (const Row &row : ghost_rows)
+      for (const auto &entry : row)
+        others.push_back(entry.first);
+    std::sort(others.begin(), others.end());
+    others.erase(std::unique(others.begin(), others.end()), others.end());
+    const unsigned int n_known = columns.size();
+    for (const DoFIndex other : others)
+      if ((other < first_ || other >= first_ + n_aggregates_) &&
+          !std::binary_search(ghosts_.begin(), ghosts_.end(), other))
+        columns.push_back(other);
+    const auto column = [&](const DoFIndex global) -> unsigned int
+    {
+      if (global >= first_ && global < first_ + n_aggregates_)
+        return global - first_;
+      auto found = std::lower_bound(columns.begin() + n_aggregates_, columns.begin() + n_known, global);
+      if (found == columns.begin() + n_known || *found != global)
+        found = std::lower_bound(columns.begin() + n_known, columns.end(), global);
+      return found - columns.begin();
+    };
+
+    std::vector<CoarseRow> rows(n_known);
+    SparseRow              product;
+    product.reinit(columns.size());
+    for (unsigned int i = 0; i < n_owned; ++i)
+    {
+      if (start_[i] == start_[i + 1])
+        continue;
+      A.for_row(K,
+                i,
+                [&](const unsigned int j, const double *block, const bool transposed)
+                {
+                  if (j < n_owned)
+                    for (std::uint32_t k = start_[j]; k < start_[j + 1]; ++k)
+                      add_product(block, transposed, load(&blocks_[block_size * std::size_t(k)]), product[column_[k]]);
+                  else
+                    for (const auto &entry : ghost_rows[j - n_owned])
+                      add_product(block, transposed, load(entry.second.data()), product[column(entry.first)]);
+                });
+      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+      {
+        CoarseRow &row = rows[column_[k]];
+        for (unsigned int l = 0; l < product.columns().size(); ++l)
+          add_transposed_product(
+              &blocks_[block_size * std::size_t(k)], product.panel(l), row[columns[product.columns()[l]]]);
+      }
+      product.clear();
+    }
+    matrix_ = Nodus::make_coarse_matrix(std::move(rows), first_, ghosts_, *row_map_, nodes_.communicator());
+  }
+
+  void Aggregation::restrict_to(Epetra_MultiVector &coarse, const double *const fine) const
+  {
+    double *const values = import_ ? (*values_)[0] : coarse[0];
+    std::fill_n(values, n_modes * (n_aggregates_ + ghosts_.size()), 0.);
+    for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
+      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+      {
+        double *const      sum = values + n_modes * column_[k];
+        const float *const p   = blocks_.data() + block_size * std::size_t(k);
+        for (unsigned int m = 0; m < n_modes; ++m)
+          sum[m] += p[m] * fine[dim * i] + p[n_modes + m] * fine[dim * i + 1] + p[2 * n_modes + m] * fine[dim * i + 2];
+      }
+    if (import_)
+      coarse.Export(*values_, *import_, Add);
+  }
+
+  void Aggregation::add_prolongation(double *const fine, const Epetra_MultiVector &coarse) const
+  {
+    if (import_)
+      values_->Import(coarse, *import_, Insert);
+    const double *const values = import_ ? (*values_)[0] : coarse[0];
+    for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
+      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+      {
+        const double *const x = values + n_modes * column_[k];
+        const float *const  p = blocks_.data() + block_size * std::size_t(k);
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int m = 0; m < n_modes; ++m)
+            fine[dim * i + c] += p[n_modes * c + m] * x[m];
+      }
+  }
+} // namespace Nodus
