@@ -69,7 +69,7 @@ namespace Nodus
     using AMG = dealii::TrilinosWrappers::PreconditionAMG;
     AMG::AdditionalData data;
     data.elliptic              = true;
-    data.smoother_sweeps       = smoother_sweeps;
+    data.smoother_sweeps       = 2 * smoother_sweeps; // the coarse levels cost little
     data.aggregation_threshold = 0.;
     Teuchos::ParameterList              parameters;
     std::unique_ptr<Epetra_MultiVector> unused;
@@ -115,24 +115,45 @@ namespace Nodus
                            D_inverse_[i][dim * c + 2] * src[dim * i + 2];
   }
 
+  /// Lanczos: a few stiff nodes at the contact must not escape, as they may escape the power iteration.
   double Multigrid::largest_eigenvalue() const
   {
-    const MPI_Comm comm = A_.map().communicator();
-    const auto     norm = [&](const std::vector<double> &v)
-    { return std::sqrt(dealii::Utilities::MPI::sum(std::inner_product(v.begin(), v.end(), v.begin(), 0.), comm)); };
-    // a rough vector that does not depend on the number of ranks
-    for (unsigned int i = 0; i < update_.size(); ++i)
-      update_[i] = std::sin(12.9898 * (dim * A_.map().global(i / dim) + i % dim + 1.));
-    double length = norm(update_);
-    for (unsigned int iteration = 0; iteration < 12 && length > 0.; ++iteration)
+    constexpr unsigned int n_steps = 15;
+    const unsigned int     n       = residual_.size();
+    const auto             dot     = [&](const std::vector<double> &v, const std::vector<double> &w) {
+      return dealii::Utilities::MPI::sum(std::inner_product(v.begin(), v.end(), w.begin(), 0.),
+                                         A_.map().communicator());
+    };
+    std::vector<double> previous(n, 0.), &v = residual_, &z = update_, &w = product_;
+    for (unsigned int i = 0; i < n; ++i) // rough, and the same on any number of ranks
+      v[i] = std::sin(12.9898 * (dim * A_.map().global(i / dim) + i % dim + 1.));
+
+    Eigen::Matrix<double, n_steps, n_steps> T    = Eigen::Matrix<double, n_steps, n_steps>::Zero();
+    double                                  beta = 0.;
+    for (unsigned int step = 0; step < n_steps; ++step)
     {
-      for (double &value : update_)
-        value /= length;
-      A_.vmult(product_.data(), update_.data());
-      apply_diagonal(update_.data(), product_.data());
-      length = norm(update_);
+      apply_diagonal(z.data(), v.data());
+      const double norm = std::sqrt(std::max(dot(v, z), 0.));
+      if (!(norm > 1e-12 * beta))
+        break;
+      if (step > 0)
+        T(step, step - 1) = T(step - 1, step) = norm;
+      beta = step > 0 ? norm : 0.;
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        v[i] /= norm;
+        z[i] /= norm;
+      }
+      A_.vmult(w.data(), z.data());
+      T(step, step) = dot(w, z);
+      for (unsigned int i = 0; i < n; ++i)
+        w[i] -= T(step, step) * v[i] + beta * previous[i];
+      previous.swap(v);
+      v.swap(w);
     }
-    return length > 0. ? 1.1 * length : 1.;
+    const double largest =
+        Eigen::SelfAdjointEigenSolver<decltype(T)>(T, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+    return largest > 0. ? 1.05 * largest : 1.;
   }
 
   void Multigrid::smooth(double *const x, double *const r, const bool last) const
