@@ -1,5 +1,6 @@
 #include <nodus/contact/tractions.h>
 #include <nodus/contact_problem_implementation.h>
+#include <nodus/output/complete_file.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -73,7 +74,6 @@ namespace Nodus
       , dof_handler(bodies.triangulation())
       , materials(make_materials(parameters.bodies))
   {
-    const auto timer = console.time("set-up");
     dof_handler.distribute_dofs(fe);
     dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
     boundary_conditions = std::make_unique<BoundaryConditions>(
@@ -102,6 +102,7 @@ namespace Nodus
     }
     u_start.resize(surfaces->nodes().size());
     gather_state();
+    profile.set_ground(Phase::other);
   }
 
   void ContactProblem::Implementation::update_results()
@@ -125,7 +126,6 @@ namespace Nodus
 
   void ContactProblem::Implementation::write(const unsigned int increment, const bool last)
   {
-    const auto                    timer = console.time("output");
     std::vector<Tables::Reaction> table;
     for (const auto &[name, force] : reactions)
       table.push_back({name, force});
@@ -158,15 +158,54 @@ namespace Nodus
     }
   }
 
+  /// Prints the times so far, and more where it was asked for. @returns what went wrong with profile.json, on rank 0.
+  std::string ContactProblem::Implementation::report_profile(const bool converged)
+  {
+    console.line("");
+    if (!detailed_profile)
+    {
+      console.line(profile.timing_table());
+      return "";
+    }
+    const Profile::Report report = profile.report(dof_handler.n_dofs(), converged, communicator);
+    console.line(report.table());
+    if (dealii::Utilities::MPI::this_mpi_process(communicator) != 0)
+      return "";
+    CompleteFile file(parameters.output.results_folder, "profile.json");
+    report.write_json(file.stream());
+    return file.finish();
+  }
+
   void ContactProblem::Implementation::run()
   {
-    summary();
-    solid->make_sparsity(system.bulk);
-    linear_solver =
-        make_linear_solver(parameters.linear_solver, surfaces->layout(), rigid_body_data(dof_handler, *mapping));
-    vtu    = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, *mapping, materials);
-    tables = std::make_unique<Tables>(parameters.output.results_folder, communicator);
+    {
+      const auto timer = profile.time(Phase::set_up);
+      if (detailed_profile)
+        profile.watch_memory();
+      summary();
+      solid->make_sparsity(system.bulk);
+      linear_solver =
+          make_linear_solver(parameters.linear_solver, surfaces->layout(), rigid_body_data(dof_handler, *mapping));
+      linear_solver->set_profile(&profile);
+      vtu    = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, *mapping, materials);
+      tables = std::make_unique<Tables>(parameters.output.results_folder, communicator);
+    }
+    try
+    {
+      follow_load_path();
+    }
+    catch (const SolverFailure &)
+    {
+      if (const std::string problem = report_profile(false); !problem.empty())
+        console.line(problem); // the failure of the solver is what the caller must hear of
+      throw;
+    }
+    throw_on_every_rank(report_profile(true), communicator);
+    console.line("Results: " + parameters.output.results_folder);
+  }
 
+  void ContactProblem::Implementation::follow_load_path()
+  {
     std::vector<double> times;
     double              start = 0.;
     const auto         &path  = parameters.load_stepping;
@@ -193,10 +232,10 @@ namespace Nodus
         time = before;
         if (increment > 1)
         {
-          relevant_u = committed.block(0);
+          const auto timer = profile.time(Phase::output);
+          relevant_u       = committed.block(0);
           vtu->write(increment - 1, before, relevant_u, fields);
         }
-        console.timing_table();
         std::ostringstream message;
         message << "increment " << increment << " (t = " << times[increment - 1] << "), geometry pass " << pass.geometry
                 << ", threshold pass " << pass.threshold << ", status pass " << pass.status << ": " << failure.what()
@@ -204,14 +243,15 @@ namespace Nodus
         throw SolverFailure(message.str());
       }
       commit();
-      update_results();
-      write(increment, increment == times.size());
+      {
+        const auto timer = profile.time(Phase::output);
+        update_results();
+        write(increment, increment == times.size());
+      }
       console.end_increment(counts, resultants);
       if (callback)
         callback(increment, time);
     }
-    console.timing_table();
-    console.line("Results: " + parameters.output.results_folder);
   }
 
   ContactProblem::ContactProblem(const Parameters &parameters, MPI_Comm communicator, std::ostream &log)
@@ -224,6 +264,11 @@ namespace Nodus
   void ContactProblem::run()
   {
     implementation_->run();
+  }
+
+  void ContactProblem::profile()
+  {
+    implementation_->detailed_profile = true;
   }
 
   void ContactProblem::validate()

@@ -63,9 +63,12 @@ namespace Nodus
       FixedPointLoop threshold("threshold", parameters.threshold_loop);
       do
       {
-        if (!merged.threshold)
-          status->freeze_threshold(site_pressure(weights, *status, state.lambda));
-        status->begin_loop(merged.status);
+        {
+          const auto timer = profile.time(Phase::status);
+          if (!merged.threshold)
+            status->freeze_threshold(site_pressure(weights, *status, state.lambda));
+          status->begin_loop(merged.status);
+        }
 
         FixedPointLoop statuses("status", parameters.status_loop);
         do
@@ -81,6 +84,8 @@ namespace Nodus
                          console.newton_iteration(pass, iteration, norms, krylov);
                          counts.newton += iteration > 0;
                          counts.krylov += krylov;
+                         profile.newton_iterations += iteration > 0;
+                         profile.krylov_iterations += krylov;
                        });
         } while (!statuses_converged(statuses));
       } while (!threshold_converged(threshold));
@@ -98,6 +103,7 @@ namespace Nodus
 
   Status::Update ContactProblem::Implementation::update_statuses(const bool closing_only)
   {
+    const auto           timer  = profile.time(Phase::status);
     const Status::Update update = status->update(
         status_input(parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state), closing_only);
     if (update.changes > 0)
@@ -130,6 +136,7 @@ namespace Nodus
       return true;
     if (!status->has_friction())
       return loop.finished(0., "");
+    const auto           timer  = profile.time(Phase::status);
     const Status::Change change = status->threshold_change(site_pressure(weights, *status, state.lambda));
     std::ostringstream   text;
     text << "threshold changes by " << change.value << ", most at " << site_locus(change.site);
@@ -142,6 +149,7 @@ namespace Nodus
     ++counts.geometry;
     if (merged.geometry)
       return true;
+    const auto           timer = profile.time(Phase::pairing);
     std::vector<Vector3> u;
     surfaces->gather(solution.block(0), u);
     const double change = largest_entry(u, u_geometry);

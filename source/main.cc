@@ -18,10 +18,11 @@ namespace
 {
   const char *const usage = R"(nodus: contact of 3D bodies at large deformation, with friction
 
-  nodus case.prm [--set "Section/Key=value"]... [--validate]
+  nodus case.prm [--set "Section/Key=value"]... [--validate | --profile]
 
   --set "Section/Key=value"  replaces a value of the file, e.g. --set "Contact pair 1/Friction coefficient=0.3"
   --validate                 reads the case, pairs the surfaces, prints a summary and stops
+  --profile                  prints CPU time, calls and memory by phase, and writes them to profile.json in the results folder
   --document                 prints the reference of all parameters (Markdown)
   --version                  prints the versions of nodus and of its libraries
   --help                     prints this text
@@ -31,7 +32,7 @@ namespace
   {
     std::string              file;
     std::vector<std::string> overrides;
-    bool                     validate = false;
+    bool                     validate = false, profile = false;
     std::string              print; ///< --document, --version or --help
   };
 
@@ -45,6 +46,8 @@ namespace
         command.print = argument;
       else if (argument == "--validate")
         command.validate = true;
+      else if (argument == "--profile")
+        command.profile = true;
       else if (argument == "--set")
       {
         if (++i == arguments.size())
@@ -61,6 +64,8 @@ namespace
     }
     if (command.file.empty() && command.print.empty())
       throw Nodus::InputError("no parameter file; see nodus --help");
+    if (command.validate && command.profile)
+      throw Nodus::InputError("--profile needs a run; leave out --validate");
     return command;
   }
 
@@ -93,12 +98,14 @@ namespace
   }
 
   /// Errors after the file was read do not know its name.
-  void solve(const Nodus::Parameters &parameters, const bool validate)
+  void solve(const Nodus::Parameters &parameters, const CommandLine &command)
   {
     try
     {
       Nodus::ContactProblem problem(parameters, MPI_COMM_WORLD);
-      if (validate)
+      if (command.profile)
+        problem.profile();
+      if (command.validate)
         problem.validate();
       else
         problem.run();
@@ -124,7 +131,7 @@ int main(int argc, char **argv)
         std::cout << answer(command.print) << std::flush;
     }
     else
-      solve(Nodus::Parameters::read(command.file, command.overrides), command.validate);
+      solve(Nodus::Parameters::read(command.file, command.overrides), command);
     return 0;
   }
   // These two are thrown on all ranks alike, so that every rank comes to its orderly end.

@@ -30,7 +30,7 @@ namespace Nodus
   /// Freezes the geometry: projections, frames, jump operator and surface weights at the current positions.
   void ContactProblem::Implementation::pair_surfaces()
   {
-    const auto    timer  = console.time("pairing");
+    const auto    timer  = profile.time(Phase::pairing);
     const Pairing before = pairing;
     gather_state();
     u_before_geometry = u_geometry;
@@ -117,12 +117,15 @@ namespace Nodus
     relevant_u              = solution.block(0);
     const auto &constraints = boundary_conditions->increment_constraints(relevant_u);
     {
-      const auto timer = console.time("bulk assembly");
+      const auto timer = profile.time(Phase::bulk_assembly);
       solid->tangent(relevant_u, time, constraints, system.bulk, system.rhs.block(0), internal, external);
     }
     if (merged.geometry && !first)
       pair_surfaces();
-    gather_state();
+    {
+      const auto timer = profile.time(Phase::contact_assembly);
+      gather_state();
+    }
     if (merged.threshold)
       follow_pressure();
 
@@ -141,7 +144,7 @@ namespace Nodus
       }
     if (merged.geometry)
     {
-      const auto timer = console.time("contact assembly");
+      const auto timer = profile.time(Phase::contact_assembly);
       GeometryTangent(parameters.contact_pairs, *surfaces, *geometry, averaged, pairing, jump, weights, *status)
           .add(state, residual, system);
     }
@@ -150,6 +153,7 @@ namespace Nodus
 
   void ContactProblem::Implementation::follow_pressure()
   {
+    const auto          timer = profile.time(Phase::status);
     std::vector<double> before(status->size());
     for (unsigned int k = 0; k < before.size(); ++k)
       before[k] = status->friction(k) ? status->threshold(k) : 0.;
@@ -169,7 +173,7 @@ namespace Nodus
   NewtonProblem::Norms
   ContactProblem::Implementation::assemble_contact(const dealii::AffineConstraints<double> &constraints)
   {
-    const auto timer = console.time("contact assembly");
+    const auto timer = profile.time(Phase::contact_assembly);
     Norms      norms;
     Vector     prescribed(surfaces->layout().owned[0], communicator);
     for (const auto i : surfaces->layout().owned[0])
@@ -205,7 +209,7 @@ namespace Nodus
 
   unsigned int ContactProblem::Implementation::solve(BlockVector &correction, const double relative_tolerance)
   {
-    const auto                 timer  = console.time("linear solver");
+    const auto                 timer  = profile.time(Phase::solver_iterations);
     const LinearSolver::Report report = linear_solver->solve(system, correction, relative_tolerance);
     if (!report.null_pivots.empty())
       throw SolverFailure("the system is singular (" + std::to_string(report.null_pivots.size()) +

@@ -1,6 +1,7 @@
 """What the studies share: runs of nodus, their results, fitted orders, tables and plots."""
 
 import csv
+import json
 import os
 import re
 import resource
@@ -56,10 +57,10 @@ class Run:
         return results.Results(self.folder).mesh("bodies", time)
 
     def timing(self):
-        """CPU seconds per phase from the table at the end of the log."""
-        found = {}
-        for name, seconds in re.findall(r"^  ([a-z][a-z -]+?) +[0-9]* +([0-9.]+) +[0-9.]+$", self.log, re.M):
-            found[name] = float(seconds)
+        """CPU seconds of all ranks by phase, and "linear solver" for its two phases."""
+        with open(os.path.join(self.folder, "profile.json")) as file:
+            found = {phase["name"]: phase["cpu_seconds"] for phase in json.load(file)["phases"]}
+        found["linear solver"] = found["solver set-up"] + found["solver iterations"]
         return found
 
 
@@ -87,7 +88,7 @@ def run(prm, name, sets=None, pair=None, ranks=1):
     for key, value in (pair or {}).items():
         keys["Contact pair 1/" + key] = value
     keys["Output/Results folder"] = folder
-    command = [NODUS, prm]
+    command = [NODUS, prm, "--profile"]
     if ranks > 1:
         command = ["mpirun", "-n", str(ranks)] + command
     for key, value in keys.items():

@@ -29,6 +29,10 @@ namespace Nodus
     /// @throws SolverFailure with the increment, the loop, the reason and the worst node.
     void run();
 
+    /// run() ends, also when it throws SolverFailure, with CPU time and memory by phase: printed, and as profile.json
+    /// in the results folder.
+    void profile();
+
     /// Pairs the surfaces in the reference configuration and prints what a run would start from.
     void validate();
 

@@ -8,6 +8,7 @@
 #include <nodus/contact_problem.h>
 #include <nodus/mesh/bodies.h>
 #include <nodus/output/console.h>
+#include <nodus/output/profile.h>
 #include <nodus/output/tables.h>
 #include <nodus/output/vtu.h>
 #include <nodus/solve/fixed_point_loop.h>
@@ -37,6 +38,7 @@ namespace Nodus
 
     // The algorithm, outermost first.
     void           run();
+    void           follow_load_path();
     void           solve_increment();
     void           solve_loops();
     void           pair_surfaces();
@@ -60,10 +62,13 @@ namespace Nodus
     void        write(unsigned int increment, bool last);
     void        update_results();
     void        summary();
+    std::string report_profile(bool converged);
 
     const Parameters parameters;
     MPI_Comm         communicator;
     Console          console;
+    Profile          profile;
+    bool             detailed_profile = false; ///< asked for: table with memory, profile.json
 
     Bodies                                      bodies;
     std::unique_ptr<const dealii::Mapping<dim>> mapping;

@@ -17,6 +17,26 @@ namespace Nodus
     return symmetrize(F * Tensor<2, dim>(S) * transpose(F)) / determinant(F);
   }
 
+  void Material::evaluate_lanes(const Lanes (&F)[dim][dim], Lanes (&S)[n_pairs], Lanes (*C)[n_pairs][n_pairs]) const
+  {
+    Tensor<2, dim>          F_cell;
+    SymmetricTensor<2, dim> S_cell;
+    SymmetricTensor<4, dim> C_cell;
+    for (unsigned int v = 0; v < n_lanes; ++v)
+    {
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int J = 0; J < dim; ++J)
+          F_cell[i][J] = F[i][J][v];
+      evaluate(F_cell, S_cell, C ? &C_cell : nullptr);
+      for (unsigned int r = 0; r < n_pairs; ++r)
+      {
+        S[r][v] = S_cell.access_raw_entry(r);
+        for (unsigned int c = 0; C && c < n_pairs; ++c)
+          (*C)[r][c][v] = C_cell.access_raw_entry(n_pairs * r + c);
+      }
+    }
+  }
+
   SymmetricTensor<4, dim> Material::symmetric_square(const SymmetricTensor<2, dim> &A)
   {
     // rows and columns of the 6x6 storage

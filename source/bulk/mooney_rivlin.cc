@@ -38,6 +38,48 @@ namespace Nodus
     }
   }
 
+  void MooneyRivlin::evaluate_lanes(const Lanes (&F)[dim][dim], Lanes (&S)[n_pairs], Lanes (*C)[n_pairs][n_pairs]) const
+  {
+    Lanes strain[n_pairs], A[n_pairs], J, J_23;
+    right_cauchy_green(F, strain);
+    determinant(F, J);
+    invert(strain, J * J, A);
+    for (unsigned int v = 0; v < n_lanes; ++v)
+      J_23[v] = 1. / std::cbrt(J[v] * J[v]);
+    const Lanes I1 = strain[0] + strain[1] + strain[2];
+    // second invariant: the sum of the principal minors
+    const Lanes I2 = strain[0] * strain[1] + strain[1] * strain[2] + strain[2] * strain[0] - strain[3] * strain[3] -
+                     strain[4] * strain[4] - strain[5] * strain[5];
+    const Lanes a = 2. * c10_ * J_23, b = 2. * c01_ * J_23 * J_23;
+    const Lanes on_A      = a * I1 / 3. + b * I2 * (2. / 3.) - kappa_ * (J - 1.) * J;
+    const Lanes isochoric = a * I1 / 9. + b * I2 * (4. / 9.);
+    const Lanes on_AA     = 2. * isochoric + kappa_ * (2. * J - 1.) * J;
+    Lanes       T[n_pairs];
+    for (unsigned int r = 0; r < n_pairs; ++r)
+    {
+      const Lanes D = r < dim ? I1 - strain[r] : -strain[r]; // dI2/d(strain)
+      S[r]          = b * D - on_A * A[r];
+      T[r]          = 2. * b * (2. / 3.) * D;
+      if (r < dim)
+      {
+        S[r] += a;
+        T[r] += 2. / 3. * a;
+      }
+    }
+    for (unsigned int r = 0; C && r < n_pairs; ++r)
+      for (unsigned int c = r; c < n_pairs; ++c)
+      {
+        Lanes AA;
+        square(A, r, c, AA);
+        Lanes sum = on_AA * A[r] * A[c] + on_A * AA - T[r] * A[c] - A[r] * T[c];
+        if (r == c && r >= dim)
+          sum -= b;
+        if (r < dim && c < dim && r != c)
+          sum += 2. * b;
+        (*C)[r][c] = (*C)[c][r] = sum;
+      }
+  }
+
   double MooneyRivlin::energy(const Tensor<2, dim> &F) const
   {
     const auto   strain = symmetrize(transpose(F) * F);

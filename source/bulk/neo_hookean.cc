@@ -23,6 +23,26 @@ namespace Nodus
       *C = lambda_ * outer_product(A, A) + 2. * (mu_ - lambda_ * log_J) * symmetric_square(A);
   }
 
+  void NeoHookean::evaluate_lanes(const Lanes (&F)[dim][dim], Lanes (&S)[n_pairs], Lanes (*C)[n_pairs][n_pairs]) const
+  {
+    Lanes strain[n_pairs], A[n_pairs], J, log_J;
+    right_cauchy_green(F, strain);
+    determinant(F, J);
+    invert(strain, J * J, A);
+    log(J, log_J);
+    const Lanes shear = mu_ - lambda_ * log_J;
+    for (unsigned int r = 0; r < n_pairs; ++r)
+    {
+      S[r] = (r < dim ? mu_ : 0.) - shear * A[r];
+      for (unsigned int c = r; C && c < n_pairs; ++c)
+      {
+        Lanes AA;
+        square(A, r, c, AA);
+        (*C)[r][c] = (*C)[c][r] = lambda_ * A[r] * A[c] + shear * AA;
+      }
+    }
+  }
+
   double NeoHookean::energy(const Tensor<2, dim> &F) const
   {
     const double log_J = std::log(determinant(F));

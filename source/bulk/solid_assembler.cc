@@ -43,8 +43,18 @@ namespace Nodus
       Point         centre;
       unsigned char body;
     };
-    std::vector<Cell>                           cells;
-    std::vector<ElementKernel::QuadraturePoint> geometry; ///< [cell][point]
+    std::vector<Cell> cells;
+    /// Consecutive cells of one body: one in each lane, lanes that are left repeat the last.
+    struct Batch
+    {
+      unsigned int first, size;
+      unsigned int cell(const unsigned int lane) const
+      {
+        return first + std::min(lane, size - 1);
+      }
+    };
+    std::vector<Batch>                          batches;
+    std::vector<ElementKernel::QuadraturePoint> geometry; ///< [batch][point]
     std::shared_ptr<const NodeMap>              nodes;
     std::vector<unsigned int>                   cell_nodes; ///< [cell][node], local numbers
     std::vector<DoFIndex>                       dofs;       ///< of the local nodes
@@ -52,15 +62,25 @@ namespace Nodus
 
   private:
     bool is_last(const Vector &u, double t, const AffineConstraints<double> *constraints, NodeMatrix *tangent);
-    void eliminate_prescribed(unsigned int cell, const AffineConstraints<double> &constraints);
-    void scatter(unsigned int cell, NodeMatrix &tangent) const;
+    void note_prescribed(const AffineConstraints<double> *constraints);
+    void prefetch(const Batch &batch, NodeMatrix &tangent) const;
+    /// The cell in @p lane of the batch at hand.
+    void add_loads(unsigned int cell, unsigned int lane, bool with_tangent);
+    void eliminate_prescribed(unsigned int cell, unsigned int lane);
+    void scatter(unsigned int cell, unsigned int lane, NodeMatrix &tangent) const;
+    /// Entry of the stiffness: node a, component i; node b, component k.
+    double &entry(unsigned int a, unsigned int i, unsigned int b, unsigned int k, unsigned int lane);
 
     std::vector<double> last_values; ///< displacement, time and prescribed displacements of the last sweep
     NodeMatrix         *last_tangent = nullptr;
-    // at the local nodes, and of the cell at hand
-    std::vector<double>    nodal_u, nodal_internal, nodal_external, nodal_rhs;
+    // at the local nodes
+    std::vector<double> nodal_u, nodal_internal, nodal_external, nodal_rhs, prescribed;
+    std::vector<char>   is_prescribed;
+    // of the batch at hand, as in ElementKernel::integrate()
+    std::vector<Lanes> batch_u, batch_force, batch_stiffness;
+    // of a cell with loads
     std::vector<double>    cell_u;
-    dealii::Vector<double> cell_internal, cell_external, cell_rhs;
+    dealii::Vector<double> cell_internal, cell_external;
     FullMatrix<double>     cell_tangent;
   };
 
@@ -78,7 +98,10 @@ namespace Nodus
     FEValues<dim> volume(mapping, fe, QGauss<dim>(fe.degree + 1), update_inverse_jacobians | update_JxW_values);
     n_q = volume.n_quadrature_points;
     cell_u.resize(fe.n_dofs_per_cell());
-    for (auto *v : {&cell_internal, &cell_external, &cell_rhs})
+    for (auto *v : {&batch_u, &batch_force})
+      v->resize(fe.n_dofs_per_cell());
+    batch_stiffness.resize(n_nodes * (n_nodes + 1) / 2 * dim * dim);
+    for (auto *v : {&cell_internal, &cell_external})
       v->reinit(fe.n_dofs_per_cell());
     cell_tangent.reinit(fe.n_dofs_per_cell(), fe.n_dofs_per_cell());
 
@@ -103,15 +126,23 @@ namespace Nodus
       }
       for (const auto face : cell->face_indices())
         AssertThrow(cell->at_boundary(face) || !cell->neighbor_is_coarser(face), ExcNotImplemented());
-      volume.reinit(cell);
-      for (const auto q : volume.quadrature_point_indices())
+      if (batches.empty() || batches.back().size == n_lanes || cells.back().body != cell->material_id())
       {
-        ElementKernel::QuadraturePoint point;
-        for (unsigned int e = 0; e < dim; ++e)
-          for (unsigned int J = 0; J < dim; ++J)
-            point.inverse_jacobian[e][J] = volume.inverse_jacobian(q)[e][J];
-        point.JxW = volume.JxW(q);
-        geometry.push_back(point);
+        batches.push_back({static_cast<unsigned int>(cells.size()), 0});
+        geometry.resize(geometry.size() + n_q);
+      }
+      const unsigned int lane = batches.back().size++;
+      volume.reinit(cell);
+      for (unsigned int q = 0; q < n_q; ++q)
+      {
+        ElementKernel::QuadraturePoint &point = geometry[geometry.size() - n_q + q];
+        for (unsigned int v = lane; v < n_lanes; ++v)
+        {
+          for (unsigned int e = 0; e < dim; ++e)
+            for (unsigned int J = 0; J < dim; ++J)
+              point.inverse_jacobian[e][J][v] = volume.inverse_jacobian(q)[e][J];
+          point.JxW[v] = volume.JxW(q);
+        }
       }
       cells.push_back({cell->center(), static_cast<unsigned char>(cell->material_id())});
       loads.add_cell(cell);
@@ -122,8 +153,9 @@ namespace Nodus
     for (unsigned int i = 0; i < nodes->size(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
         dofs.push_back(dim * nodes->global(i) + c);
-    for (auto *v : {&nodal_u, &nodal_internal, &nodal_external, &nodal_rhs})
+    for (auto *v : {&nodal_u, &nodal_internal, &nodal_external, &nodal_rhs, &prescribed})
       v->resize(dofs.size());
+    is_prescribed.resize(dofs.size());
   }
 
   void SolidAssembler::Scratch::make_positions(NodeMatrix &tangent)
@@ -137,42 +169,97 @@ namespace Nodus
           positions.push_back(tangent.position(cell_nodes[c * n_nodes + a], cell_nodes[c * n_nodes + b]));
   }
 
-  void SolidAssembler::Scratch::eliminate_prescribed(const unsigned int               cell,
-                                                     const AffineConstraints<double> &constraints)
+  inline double &SolidAssembler::Scratch::entry(
+      const unsigned int a, const unsigned int i, const unsigned int b, const unsigned int k, const unsigned int lane)
   {
-    for (unsigned int i = 0; i < cell_rhs.size(); ++i)
+    if (b < a)
+      return entry(b, k, a, i, lane);
+    const unsigned int pair = a * n_nodes - a * (a + 1) / 2 + b;
+    return reinterpret_cast<double *>(batch_stiffness.data())[((pair * dim + i) * dim + k) * n_lanes + lane];
+  }
+
+  void SolidAssembler::Scratch::note_prescribed(const AffineConstraints<double> *constraints)
+  {
+    for (unsigned int i = 0; i < dofs.size(); ++i)
     {
-      const DoFIndex dof = dofs[dim * cell_nodes[cell * n_nodes + i / dim] + i % dim];
-      if (!constraints.is_constrained(dof))
-        continue;
-      const double value = constraints.get_inhomogeneity(dof), diagonal = std::abs(cell_tangent(i, i));
-      for (unsigned int j = 0; j < cell_rhs.size(); ++j)
-      {
-        cell_rhs(j) -= cell_tangent(j, i) * value;
-        cell_tangent(i, j) = cell_tangent(j, i) = 0.;
-      }
-      cell_tangent(i, i) = diagonal;
-      cell_rhs(i)        = 0.;
+      is_prescribed[i] = constraints && constraints->is_constrained(dofs[i]);
+      prescribed[i]    = is_prescribed[i] ? constraints->get_inhomogeneity(dofs[i]) : 0.;
     }
   }
 
-  void SolidAssembler::Scratch::scatter(const unsigned int cell, NodeMatrix &tangent) const
+  void SolidAssembler::Scratch::add_loads(const unsigned int cell, const unsigned int lane, const bool with_tangent)
   {
-    const NodeMatrix::Position *position = positions.data() + cell * (n_nodes * (n_nodes + 1) / 2);
+    const unsigned int *const node = cell_nodes.data() + cell * n_nodes;
+    for (unsigned int i = 0; i < dim * n_nodes; ++i)
+      cell_u[i] = batch_u[i][lane];
+    cell_internal = 0.;
+    cell_external = 0.;
+    cell_tangent  = 0.;
+    loads.add(cell, {cell_u, cell_internal, cell_external, with_tangent ? &cell_tangent : nullptr});
+    for (unsigned int i = 0; i < dim * n_nodes; ++i)
+    {
+      batch_force[i][lane] += cell_internal(i);
+      nodal_external[dim * node[i / dim] + i % dim] += cell_external(i);
+    }
+    if (with_tangent)
+      for (unsigned int a = 0; a < n_nodes; ++a)
+        for (unsigned int b = a; b < n_nodes; ++b)
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int k = 0; k < dim; ++k)
+              entry(a, i, b, k, lane) += cell_tangent(dim * a + i, dim * b + k);
+  }
+
+  /// The blocks come from memory while the kernel computes.
+  void SolidAssembler::Scratch::prefetch(const Batch &batch, NodeMatrix &tangent) const
+  {
+    const std::size_t           n_pairs  = n_nodes * (n_nodes + 1) / 2;
+    const NodeMatrix::Position *position = positions.data() + batch.first * n_pairs;
+    for (std::size_t k = 0; k < batch.size * n_pairs; ++k, ++position)
+      if (position->stored())
+        __builtin_prefetch(tangent.block(position->block()), 1);
+  }
+
+  void SolidAssembler::Scratch::eliminate_prescribed(const unsigned int cell, const unsigned int lane)
+  {
+    const unsigned int *const node = cell_nodes.data() + cell * n_nodes;
     for (unsigned int a = 0; a < n_nodes; ++a)
-      for (unsigned int b = a; b < n_nodes; ++b, ++position)
+      for (unsigned int i = 0; i < dim; ++i)
       {
-        if (!position->stored())
+        const unsigned int dof = dim * node[a] + i;
+        if (!is_prescribed[dof])
           continue;
-        double *const block = tangent.block(position->block());
-        const bool    swap  = position->transposed();
-        for (unsigned int i = 0; i < dim; ++i)
-        {
-          const double *const row = &cell_tangent(dim * (swap ? b : a) + i, dim * (swap ? a : b));
+        const double diagonal = std::abs(entry(a, i, a, i, lane));
+        for (unsigned int b = 0; b < n_nodes; ++b)
           for (unsigned int k = 0; k < dim; ++k)
-            block[dim * i + k] += row[k];
-        }
+          {
+            double &K = entry(b, k, a, i, lane);
+            nodal_rhs[dim * node[b] + k] -= K * prescribed[dof];
+            K = 0.;
+            if (a == b) // stored in full
+              entry(a, i, a, k, lane) = 0.;
+          }
+        entry(a, i, a, i, lane) = diagonal;
       }
+  }
+
+  void SolidAssembler::Scratch::scatter(const unsigned int cell, const unsigned int lane, NodeMatrix &tangent) const
+  {
+    const std::size_t           n_pairs  = n_nodes * (n_nodes + 1) / 2;
+    const NodeMatrix::Position *position = positions.data() + cell * n_pairs;
+    const double               *K        = reinterpret_cast<const double *>(batch_stiffness.data()) + lane;
+    for (unsigned int pair = 0; pair < n_pairs; ++pair, ++position, K += dim * dim * n_lanes)
+    {
+      if (!position->stored())
+        continue;
+      double *const block = tangent.block(position->block());
+      if (position->transposed())
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int k = 0; k < dim; ++k)
+            block[dim * k + i] += K[(dim * i + k) * n_lanes];
+      else
+        for (unsigned int i = 0; i < dim * dim; ++i)
+          block[i] += K[i * n_lanes];
+    }
   }
 
   /// Contact loops come back with other statuses and the same displacement: then everything is there already. Otherwise
@@ -226,45 +313,52 @@ namespace Nodus
     for (auto *v : {&nodal_internal, &nodal_external, &nodal_rhs})
       std::fill(v->begin(), v->end(), 0.);
 
-    std::string failure;
-    for (unsigned int c = 0; c < cells.size(); ++c)
-    {
-      const unsigned int *const cell = cell_nodes.data() + c * n_nodes;
-      for (unsigned int a = 0; a < n_nodes; ++a)
-        std::copy_n(nodal_u.begin() + dim * cell[a], dim, cell_u.begin() + dim * a);
-      const double det_F = kernel->integrate(
-          &geometry[c * n_q], *materials[cells[c].body], cell_u, cell_internal, tangent ? &cell_tangent : nullptr);
-      if (!(det_F > 0.))
-      {
-        std::ostringstream message;
-        message << "Body " << int(cells[c].body) + 1 << ": the element centred at (" << cells[c].centre
-                << ") in the reference configuration is turned inside out, det F = " << det_F;
-        failure = message.str();
-        break;
-      }
-      const bool loaded = loads.act_on(c);
-      if (loaded)
-      {
-        cell_external = 0.;
-        loads.add(c, {cell_u, cell_internal, cell_external, tangent ? &cell_tangent : nullptr});
-      }
+    note_prescribed(constraints);
 
-      for (unsigned int i = 0; i < dim * n_nodes; ++i)
+    std::string failure;
+    for (unsigned int n = 0; n < batches.size() && failure.empty(); ++n)
+    {
+      const Batch &batch = batches[n];
+      for (unsigned int v = 0; v < n_lanes; ++v)
       {
-        const unsigned int dof = dim * cell[i / dim] + i % dim;
-        nodal_internal[dof] += cell_internal(i);
-        if (loaded)
-          nodal_external[dof] += cell_external(i);
+        const unsigned int *const node = cell_nodes.data() + batch.cell(v) * n_nodes;
+        for (unsigned int i = 0; i < dim * n_nodes; ++i)
+          batch_u[i][v] = nodal_u[dim * node[i / dim] + i % dim];
       }
-      if (!tangent)
-        continue;
-      for (unsigned int i = 0; i < dim * n_nodes; ++i)
-        cell_rhs(i) = (loaded ? cell_external(i) : 0.) - cell_internal(i);
-      eliminate_prescribed(c, *constraints);
-      for (unsigned int i = 0; i < dim * n_nodes; ++i)
-        nodal_rhs[dim * cell[i / dim] + i % dim] += cell_rhs(i);
-      scatter(c, *tangent);
+      if (tangent)
+        prefetch(batch, *tangent);
+      Lanes det_F;
+      kernel->integrate(&geometry[n * n_q],
+                        *materials[cells[batch.first].body],
+                        batch_u.data(),
+                        batch_force.data(),
+                        tangent ? batch_stiffness.data() : nullptr,
+                        det_F);
+      for (unsigned int v = 0; v < batch.size && failure.empty(); ++v)
+        if (!(det_F[v] > 0.))
+        {
+          const Cell        &cell = cells[batch.first + v];
+          std::ostringstream message;
+          message << "Body " << int(cell.body) + 1 << ": the element centred at (" << cell.centre
+                  << ") in the reference configuration is turned inside out, det F = " << det_F[v];
+          failure = message.str();
+        }
+      for (unsigned int v = 0; v < batch.size && failure.empty(); ++v)
+      {
+        const unsigned int        c    = batch.first + v;
+        const unsigned int *const node = cell_nodes.data() + c * n_nodes;
+        if (loads.act_on(c))
+          add_loads(c, v, tangent);
+        for (unsigned int i = 0; i < dim * n_nodes; ++i)
+          nodal_internal[dim * node[i / dim] + i % dim] += batch_force[i][v];
+        if (!tangent)
+          continue;
+        eliminate_prescribed(c, v);
+        scatter(c, v, *tangent);
+      }
     }
+    for (unsigned int i = 0; i < dofs.size(); ++i)
+      nodal_rhs[i] = is_prescribed[i] ? 0. : nodal_rhs[i] + nodal_external[i] - nodal_internal[i];
 
     set_all();
     if (!failure.empty())

@@ -24,6 +24,23 @@ namespace Nodus
       *C = lambda_ * outer_product(I, I) + 2. * mu_ * identity_tensor<dim>();
   }
 
+  void
+  StVenantKirchhoff::evaluate_lanes(const Lanes (&F)[dim][dim], Lanes (&S)[n_pairs], Lanes (*C)[n_pairs][n_pairs]) const
+  {
+    Lanes strain[n_pairs]; // right Cauchy-Green
+    right_cauchy_green(F, strain);
+    const Lanes pressure = lambda_ / 2. * (strain[0] + strain[1] + strain[2] - 3.);
+    for (unsigned int r = 0; r < n_pairs; ++r)
+    {
+      S[r] = mu_ * strain[r];
+      if (r < dim)
+        S[r] += pressure - mu_;
+      if (C)
+        for (unsigned int c = 0; c < n_pairs; ++c)
+          (*C)[r][c] = Lanes{} + ((r < dim && c < dim ? lambda_ : 0.) + (r == c ? (r < dim ? 2. : 1.) * mu_ : 0.));
+    }
+  }
+
   double StVenantKirchhoff::energy(const Tensor<2, dim> &F) const
   {
     const auto E = 0.5 * (symmetrize(transpose(F) * F) - unit_symmetric_tensor<dim>());

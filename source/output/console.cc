@@ -1,7 +1,6 @@
 #include <nodus/output/console.h>
 
 #include <cstdio>
-#include <ctime>
 #include <ostream>
 
 namespace Nodus
@@ -11,10 +10,6 @@ namespace Nodus
     /// Progress is reported this often, in seconds, on runs that last.
     constexpr double progress_interval = 30.;
 
-    double cpu_seconds()
-    {
-      return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-    }
     double seconds_since(const std::chrono::steady_clock::time_point &start)
     {
       return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -102,30 +97,5 @@ namespace Nodus
                   elapsed,
                   elapsed * (n_increments_ - increment_) / increment_));
     }
-  }
-
-  Console::Timer::Timer(Console &console, const std::string &section)
-      : console_(console)
-      , section_(section)
-      , cpu_(cpu_seconds())
-      , wall_(std::chrono::steady_clock::now())
-  {
-  }
-
-  Console::Timer::~Timer()
-  {
-    Seconds &s = console_.seconds_[section_];
-    s.cpu += cpu_seconds() - cpu_;
-    s.wall += seconds_since(wall_);
-    ++s.calls;
-  }
-
-  void Console::timing_table()
-  {
-    line("");
-    line("  section                  calls     CPU s    wall s");
-    for (const auto &[section, s] : seconds_)
-      line(format("  %-22s %7u %9.2f %9.2f", section.c_str(), s.calls, s.cpu, s.wall));
-    line(format("  %-22s         %9.2f %9.2f", "whole run", cpu_seconds(), seconds_since(start_)));
   }
 } // namespace Nodus

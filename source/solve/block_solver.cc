@@ -42,8 +42,13 @@ namespace Nodus
         throw SolverFailure(message.str());
       };
 
-      const BlockPreconditioner preconditioner(matrix, parameters_.augmentation_factor, rigid_body_data_);
-      double                    residual = norm_b;
+      const auto set_up = [&]
+      {
+        const auto timer = time_set_up();
+        return std::make_unique<const BlockPreconditioner>(matrix, parameters_.augmentation_factor, rigid_body_data_);
+      };
+      const auto preconditioner = set_up();
+      double     residual       = norm_b;
       // The residual that FGMRES carries along can drift from the true one: start again until that one is small.
       for (unsigned int start = 0; start < 3 && !(residual <= tolerance * norm_b); ++start)
       {
@@ -52,7 +57,7 @@ namespace Nodus
         dealii::SolverFGMRES<BlockVector> fgmres(control, dealii::SolverFGMRES<BlockVector>::AdditionalData(60));
         try
         {
-          fgmres.solve(matrix, x, b, preconditioner);
+          fgmres.solve(matrix, x, b, *preconditioner);
         }
         catch (const dealii::SolverControl::NoConvergence &)
         {

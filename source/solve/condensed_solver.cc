@@ -59,6 +59,7 @@ namespace Nodus
 
   void CondensedSolver::make_multigrid(const LinearSystem &system, const Condensation &condensation)
   {
+    const auto timer = time_set_up();
     multigrid_.reset(); // refers to the matrix
     matrix_ = std::make_unique<CorrectedMatrix>(system.bulk, condensation.taken_out(), condensation.correction());
     std::vector<double> modes = rigid_body_modes(system.bulk, rigid_body_data_);
@@ -169,11 +170,14 @@ namespace Nodus
     std::unique_ptr<Condensation> condensation;
     try
     {
-      condensation = std::make_unique<Condensation>(matrix);
+      const auto timer = time_set_up();
+      condensation     = std::make_unique<Condensation>(matrix);
     }
     catch (const NotCondensable &)
     {
-      return BlockSolver(parameters_, rigid_body_data_).solve(system, solution, relative_tolerance);
+      BlockSolver block_solver(parameters_, rigid_body_data_);
+      block_solver.set_profile(profile_);
+      return block_solver.solve(system, solution, relative_tolerance);
     }
     const BlockVector b = matrix.rhs();
     BlockVector       x, r;

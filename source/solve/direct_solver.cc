@@ -197,6 +197,7 @@ namespace Nodus
 
   void DirectSolver::factorise(const bool pattern_changed)
   {
+    const auto timer = time_set_up();
     if (!instance_)
       instance_ = std::make_unique<Instance>(communicator_, symmetric_);
     DMUMPS_STRUC_C &mumps = instance_->mumps;

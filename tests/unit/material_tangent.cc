@@ -1,5 +1,5 @@
-// Each law: S is the derivative of the energy, C that of S, both are objective, and the initial moduli are those of
-// linear elasticity; closed-form stresses.
+// Each law: S is the derivative of the energy, C that of S, both are objective, several points at once give what one
+// after the other does, and the initial moduli are those of linear elasticity; closed-form stresses.
 
 #include <nodus/bulk/material.h>
 
@@ -63,6 +63,39 @@ namespace
       std::cout << "    error " << error << std::endl;
   }
 
+  /// Largest difference of several points at once from one after the other, relative; also of the default that asks
+  /// evaluate().
+  double lanes_error(const Nodus::Material &material)
+  {
+    using namespace Nodus;
+    double error = 0.;
+    Lanes  F[dim][dim], S[n_pairs], C[n_pairs][n_pairs];
+    for (unsigned int v = 0; v < n_lanes; ++v)
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          F[i][j][v] = v < 3 ? deformation(v)[i][j] : i == j;
+    for (const bool by_default : {false, true})
+    {
+      if (by_default)
+        material.Material::evaluate_lanes(F, S, &C);
+      else
+        material.evaluate_lanes(F, S, &C);
+      for (unsigned int v = 0; v < n_lanes; ++v)
+      {
+        SymmetricTensor<2, dim> S_one;
+        SymmetricTensor<4, dim> C_one;
+        material.evaluate(v < 3 ? deformation(v) : Tensor<2, dim>(unit_symmetric_tensor<dim>()), S_one, &C_one);
+        for (unsigned int r = 0; r < n_pairs; ++r)
+        {
+          error = std::max(error, std::abs(S[r][v] - S_one.access_raw_entry(r)) / C_one.norm());
+          for (unsigned int c = 0; c < n_pairs; ++c)
+            error = std::max(error, std::abs(C[r][c][v] - C_one.access_raw_entry(n_pairs * r + c)) / C_one.norm());
+        }
+      }
+    }
+    return error;
+  }
+
   void run(const std::string &name, const Law law)
   {
     const auto   material = make(law);
@@ -114,6 +147,7 @@ namespace
     const auto hooke = lambda * outer_product(I, I) + 2. * mu * identity_tensor<dim>();
     check("stress and energy at rest within", S.norm() + std::abs(material->energy(I)), 1e-13);
     check("initial tangent Hooke's within", (C - hooke).norm() / hooke.norm(), 1e-13);
+    check("several points at once within", lanes_error(*material), 1e-13);
     check("initial modulus E within", std::abs(material->youngs_modulus() - E), 1e-13);
   }
 

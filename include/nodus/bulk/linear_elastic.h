@@ -18,6 +18,7 @@ namespace Nodus
     void   evaluate(const dealii::Tensor<2, dim>    &F,
                     dealii::SymmetricTensor<2, dim> &S,
                     dealii::SymmetricTensor<4, dim> *C) const override;
+    void   evaluate_lanes(const Lanes (&F)[dim][dim], Lanes (&S)[n_pairs], Lanes (*C)[n_pairs][n_pairs]) const override;
     double energy(const dealii::Tensor<2, dim> &F) const override;
     double youngs_modulus() const override
     {

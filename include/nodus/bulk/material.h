@@ -1,6 +1,7 @@
 #ifndef nodus_bulk_material_h
 #define nodus_bulk_material_h
 
+#include <nodus/bulk/lanes.h>
 #include <nodus/parameters.h>
 
 #include <deal.II/base/symmetric_tensor.h>
@@ -29,6 +30,10 @@ namespace Nodus
     virtual void evaluate(const dealii::Tensor<2, dim>    &F,
                           dealii::SymmetricTensor<2, dim> &S,
                           dealii::SymmetricTensor<4, dim> *C) const = 0;
+
+    /// evaluate() at a point of n_lanes cells at once; C null: not computed. The default asks evaluate() for each: a
+    /// law overrides it to be fast.
+    virtual void evaluate_lanes(const Lanes (&F)[dim][dim], Lanes (&S)[n_pairs], Lanes (*C)[n_pairs][n_pairs]) const;
 
     /// Stored energy per reference volume, zero at F = I.
     virtual double energy(const dealii::Tensor<2, dim> &F) const = 0;

@@ -6,7 +6,6 @@
 
 #include <chrono>
 #include <iosfwd>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -31,35 +30,9 @@ namespace Nodus
     void remark(const std::string &text);
     void end_increment(const IterationCounts &counts, const std::vector<ContactResultants> &contact);
 
-    /// Adds the time until the returned object dies to @p section of the timing table.
-    class Timer
-    {
-    public:
-      Timer(Console &console, const std::string &section);
-      ~Timer();
-
-    private:
-      Console                              &console_;
-      std::string                           section_;
-      double                                cpu_;
-      std::chrono::steady_clock::time_point wall_;
-    };
-    Timer time(const std::string &section)
-    {
-      return Timer(*this, section);
-    }
-    /// CPU (of rank 0) and wall seconds by section.
-    void timing_table();
-
   private:
-    struct Seconds
-    {
-      double       cpu = 0., wall = 0.;
-      unsigned int calls = 0;
-    };
     std::ostream                         &stream_;
     bool                                  active_;
-    std::map<std::string, Seconds>        seconds_;
     std::chrono::steady_clock::time_point start_, last_progress_;
     unsigned int                          increment_ = 0, n_increments_ = 0;
   };

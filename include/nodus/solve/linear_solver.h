@@ -1,6 +1,7 @@
 #ifndef nodus_solve_linear_solver_h
 #define nodus_solve_linear_solver_h
 
+#include <nodus/output/profile.h>
 #include <nodus/parameters.h>
 #include <nodus/solve/linear_system.h>
 
@@ -30,6 +31,21 @@ namespace Nodus
     /// solved with null pivots reported (direct), the caller decides.
     /// An iterative solver may stop at @p relative_tolerance, or at its own tolerance where that is larger.
     virtual Report solve(const LinearSystem &system, BlockVector &solution, double relative_tolerance = 0.) = 0;
+
+    /// Set-up counts as Phase::solver_set_up from now on.
+    void set_profile(Profile *profile)
+    {
+      profile_ = profile;
+    }
+
+  protected:
+    /// Preconditioner or factorisation: until the returned object dies.
+    [[nodiscard]] Profile::Scope time_set_up() const
+    {
+      return Profile::Scope(profile_, Phase::solver_set_up);
+    }
+
+    Profile *profile_ = nullptr;
   };
 
   /// Coordinates of the degrees of freedom for the rigid-body modes, and the constrained ones (zero in the modes).
