@@ -107,6 +107,10 @@ namespace Nodus
 
     const IndexSet       &owned = dof_handler.locally_owned_dofs();
     std::vector<DoFIndex> cell_dofs(fe.n_dofs_per_cell()), global_nodes, ghosts;
+    const std::size_t     n_cells = dof_handler.get_triangulation().n_active_cells();
+    // the largest arrays: growing them would take twice their memory
+    geometry.reserve(n_q * (n_cells / n_lanes + materials.size()));
+    global_nodes.reserve(n_nodes * n_cells);
     for (const auto &cell : dof_handler.active_cell_iterators())
     {
       if (cell->is_artificial())
@@ -148,6 +152,7 @@ namespace Nodus
       loads.add_cell(cell);
     }
     nodes = std::make_shared<NodeMap>(owned, std::move(ghosts), dof_handler.get_communicator());
+    cell_nodes.reserve(global_nodes.size());
     for (const DoFIndex node : global_nodes)
       cell_nodes.push_back(nodes->local(node));
     for (unsigned int i = 0; i < nodes->size(); ++i)

@@ -128,8 +128,8 @@ namespace Nodus
     for (unsigned int i = 0; i < n; ++i) // rough, and the same on any number of ranks
       v[i] = std::sin(12.9898 * (dim * A_.map().global(i / dim) + i % dim + 1.));
 
-    Eigen::Matrix<double, n_steps, n_steps> T    = Eigen::Matrix<double, n_steps, n_steps>::Zero();
-    double                                  beta = 0.;
+    Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(n_steps), beside = Eigen::VectorXd::Zero(n_steps - 1);
+    double          beta = 0.;
     for (unsigned int step = 0; step < n_steps; ++step)
     {
       apply_diagonal(z.data(), v.data());
@@ -137,7 +137,7 @@ namespace Nodus
       if (!(norm > 1e-12 * beta))
         break;
       if (step > 0)
-        T(step, step - 1) = T(step - 1, step) = norm;
+        beside[step - 1] = norm;
       beta = step > 0 ? norm : 0.;
       for (unsigned int i = 0; i < n; ++i)
       {
@@ -145,14 +145,15 @@ namespace Nodus
         z[i] /= norm;
       }
       A_.vmult(w.data(), z.data());
-      T(step, step) = dot(w, z);
+      diagonal[step] = dot(w, z);
       for (unsigned int i = 0; i < n; ++i)
-        w[i] -= T(step, step) * v[i] + beta * previous[i];
+        w[i] -= diagonal[step] * v[i] + beta * previous[i];
       previous.swap(v);
       v.swap(w);
     }
-    const double largest =
-        Eigen::SelfAdjointEigenSolver<decltype(T)>(T, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
+    eigen.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
+    const double largest = eigen.eigenvalues().maxCoeff();
     return largest > 0. ? 1.05 * largest : 1.;
   }
 
