@@ -131,7 +131,7 @@ namespace Nodus
       table.push_back({name, force});
     tables->add(increment, time, resultants, table, counts);
     const unsigned int interval = parameters.output.vtu_interval;
-    if (last || (interval > 0 && increment % interval == 0))
+    if (vtu && (last || (interval > 0 && increment % interval == 0)))
     {
       relevant_u = committed.block(0);
       vtu->write(increment, time, relevant_u, fields);
@@ -187,7 +187,8 @@ namespace Nodus
       linear_solver =
           make_linear_solver(parameters.linear_solver, surfaces->layout(), rigid_body_data(dof_handler, *mapping));
       linear_solver->set_profile(&profile);
-      vtu    = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, *mapping, materials);
+      if (parameters.output.write_vtu)
+        vtu = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, *mapping, materials);
       tables = std::make_unique<Tables>(parameters.output.results_folder, communicator);
     }
     try
@@ -230,7 +231,7 @@ namespace Nodus
       {
         roll_back();
         time = before;
-        if (increment > 1)
+        if (vtu && increment > 1)
         {
           const auto timer = profile.time(Phase::output);
           relevant_u       = committed.block(0);

@@ -222,6 +222,9 @@ namespace Nodus
                         "Folder of all results [-], relative to the working folder; empty: results/<name of the .prm "
                         "file>.",
                         Patterns::Anything());
+      prm.add_parameter("Write VTU",
+                        output.write_vtu,
+                        "Whether fields are written [-]; false leaves the tables (a series of runs, measuring time).");
       prm.add_parameter("VTU interval",
                         output.vtu_interval,
                         "Increments between two files of the fields [-]; 0: the last increment only.",

@@ -61,6 +61,7 @@ namespace Nodus
   {
     const auto timer = time_set_up();
     multigrid_.reset(); // refers to the matrix
+    matrix_.reset();    // before the next one takes as much memory
     matrix_ = std::make_unique<CorrectedMatrix>(system.bulk, condensation.taken_out(), condensation.correction());
     std::vector<double> modes = rigid_body_modes(system.bulk, rigid_body_data_);
     condensation.transform_modes(modes);

@@ -30,6 +30,7 @@ namespace Nodus
           std::fill_n(stiffness_.begin() + 9 * k, 9, 0.F);
 
     start_.assign(nodes_.n_owned() + 1, 0);
+    values_.reserve(correction.size());
     for (auto entry = correction.begin(); entry != correction.end();)
     {
       const DoFIndex node = entry->row / dim;

@@ -145,6 +145,7 @@ int main()
   print("\ninterval ends", parameters.load_stepping.interval_ends);
   print("increments", parameters.load_stepping.increments);
   print("\nresults folder", parameters.output.results_folder);
+  print("Write VTU", parameters.output.write_vtu);
   print("VTU interval", parameters.output.vtu_interval);
 
   print("\nkeys that every_key.prm forgets", count_forgotten(file));

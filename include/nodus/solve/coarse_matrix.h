@@ -27,6 +27,8 @@ namespace Nodus
           order_.begin(), order_.end(), column, [](const auto &o, const DoFIndex c) { return o.first < c; });
       if (found != order_.end() && found->first == column)
         return blocks_[found->second];
+      if (blocks_.size() == blocks_.capacity())
+        blocks_.reserve(blocks_.size() + 9); // doubling would take more memory than the matrix
       order_.emplace(found, column, static_cast<unsigned int>(blocks_.size()));
       return blocks_.emplace_back(Block{});
     }
