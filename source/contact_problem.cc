@@ -74,6 +74,8 @@ namespace Nodus
       , materials(make_materials(parameters.bodies))
   {
     const auto timer = console.time("set-up");
+    if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 && !parameters.contact_pairs.empty())
+      balance_contact(parameters.contact_pairs, *mapping, bodies);
     dof_handler.distribute_dofs(fe);
     dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
     boundary_conditions = std::make_unique<BoundaryConditions>(

@@ -72,7 +72,7 @@ namespace Nodus
     namespace bgi = boost::geometry::index;
     Projection best;
     double     best_distance = reach * reach;
-    for (auto leaf = tree_->leaves.qbegin(bgi::nearest(p, master_.n_faces())); leaf != tree_->leaves.qend(); ++leaf)
+    for (auto leaf = tree_->leaves.qbegin(bgi::nearest(p, master_.n_faces() + 1)); leaf != tree_->leaves.qend(); ++leaf)
     {
       if (squared_distance(leaf->first, p) > best_distance)
         break; // boxes come in ascending distance

@@ -103,7 +103,7 @@ namespace Nodus
         namespace bgi   = boost::geometry::index;
         const Box box   = question.box();
         double    bound = question.ball;
-        for (auto leaf = tree.qbegin(bgi::nearest(box, leaves.size())); leaf != tree.qend(); ++leaf)
+        for (auto leaf = tree.qbegin(bgi::nearest(box, leaves.size() + 1)); leaf != tree.qend(); ++leaf)
         {
           if (smallest_distance(box, leaf->first) > bound)
             break;

@@ -42,6 +42,11 @@ namespace Nodus
     double       xi, eta, weight; ///< of the rule on [0, 1]^2
   };
 
+  /// Divides the cells among the ranks so that those with slave faces, where contact is searched and assembled, do not
+  /// all come on top of an equal share. Collective.
+  void
+  balance_contact(const std::vector<ContactPairParameters> &pairs, const dealii::Mapping<dim> &mapping, Bodies &bodies);
+
   /// This rank's part of the slave and master surfaces of all pairs, in local numbers.
   ///
   /// - slave faces: of own cells, and all at the nodes of those and at own nodes. Normals and areas are complete at the
