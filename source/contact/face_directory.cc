@@ -112,8 +112,12 @@ namespace Nodus
     std::map<unsigned int, std::set<NodeKey>>       nodes;
     std::map<unsigned int, std::vector<NodeKey>>    questions;
     std::map<unsigned int, std::vector<FaceRecord>> answers;
-    std::set<std::pair<unsigned int, unsigned int>> present;
-    const auto answer = [&](const unsigned int other, const std::vector<NodeKey> &keys)
+    for (const FaceRecord &face : faces)
+      for (unsigned int n = 0; n < n_face_nodes_; ++n)
+        nodes[owner(face.dofs[n][0])].insert({2 * face.pair + face.side, face.dofs[n][0]});
+    for (const auto &[other, keys] : nodes)
+      questions[other].assign(keys.begin(), keys.end());
+    for (const auto &[other, keys] : dealii::Utilities::MPI::some_to_some(communicator, questions))
     {
       std::set<unsigned int> indices;
       for (const NodeKey &key : keys)
@@ -122,15 +126,7 @@ namespace Nodus
       for (const unsigned int i : indices)
         if (at_own_nodes_[i].rank != other) // who has its own faces already
           answers[other].push_back(at_own_nodes_[i]);
-    };
-
-    for (const FaceRecord &face : faces)
-      for (unsigned int n = 0; n < n_face_nodes_; ++n)
-        nodes[owner(face.dofs[n][0])].insert({2 * face.pair + face.side, face.dofs[n][0]});
-    for (const auto &[other, keys] : nodes)
-      questions[other].assign(keys.begin(), keys.end());
-    for (const auto &[other, keys] : dealii::Utilities::MPI::some_to_some(communicator, questions))
-      answer(other, keys);
+    }
     for (const auto &[other, found] : dealii::Utilities::MPI::some_to_some(communicator, answers))
       faces.insert(faces.end(), found.begin(), found.end());
     make_unique(faces);
