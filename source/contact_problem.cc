@@ -74,6 +74,8 @@ namespace Nodus
       , dof_handler(bodies.triangulation())
       , materials(make_materials(parameters.bodies))
   {
+    if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 && !parameters.contact_pairs.empty())
+      balance_contact(parameters.contact_pairs, *mapping, bodies);
     dof_handler.distribute_dofs(fe);
     dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
     boundary_conditions = std::make_unique<BoundaryConditions>(
@@ -100,7 +102,8 @@ namespace Nodus
       const auto ends = bodies.bounding_box(b).get_boundary_points();
       length_scale    = std::max(length_scale, 1e-6 * ends.first.distance(ends.second));
     }
-    u_start.resize(surfaces->nodes().size());
+    for (Vector *v : {&u_geometry, &u_before_geometry})
+      v->reinit(layout.owned[0], communicator);
     gather_state();
     profile.set_ground(Phase::other);
   }
@@ -109,6 +112,7 @@ namespace Nodus
   {
     fields = Nodus::contact_fields(
         parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state, residual);
+    whole_fields.clear();
     resultants = Nodus::contact_resultants(
         parameters.contact_pairs, *surfaces, pairing, jump, weights, *status, state, residual);
     reactions.clear();
@@ -143,7 +147,7 @@ namespace Nodus
     std::ostringstream text;
     text << bodies.size() << (bodies.size() == 1 ? " body, " : " bodies, ")
          << bodies.triangulation().n_global_active_cells() << " cells, " << dof_handler.n_dofs()
-         << " displacement degrees of freedom (Q" << parameters.degree << "), " << surfaces->slave_nodes().size()
+         << " displacement degrees of freedom (Q" << parameters.degree << "), " << surfaces->layout().n_slave_nodes
          << " slave nodes, " << dealii::Utilities::MPI::n_mpi_processes(communicator)
          << (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1 ? " process" : " processes");
     console.line((parameters.title.empty() ? "nodus" : parameters.title) + ": " + text.str());
@@ -152,7 +156,7 @@ namespace Nodus
       std::ostringstream line;
       line << "  contact pair " << p + 1
            << (parameters.contact_pairs[p].name.empty() ? "" : " (" + parameters.contact_pairs[p].name + ")") << ": "
-           << surfaces->slave_faces(p).size() << " slave faces on " << surfaces->master_faces(p).size()
+           << surfaces->n_faces(p, slave_side) << " slave faces on " << surfaces->n_faces(p, master_side)
            << " master faces, mean slave face size " << surfaces->face_size(p);
       console.line(line.str());
     }
@@ -282,7 +286,7 @@ namespace Nodus
       unsigned int n = 0, found = 0, closed = 0;
       double       smallest = std::numeric_limits<double>::max(), largest = -smallest;
       for (unsigned int k = 0; k < p.pairing.size(); ++k)
-        if (p.surfaces->pair(k) == pair && p.surfaces->has_status(k))
+        if (p.surfaces->pair(k) == pair && p.surfaces->has_status(k) && p.surfaces->is_owned(k))
         {
           ++n;
           closed += p.status->contact(k);
@@ -293,6 +297,10 @@ namespace Nodus
           smallest         = std::min(smallest, gap);
           largest          = std::max(largest, gap);
         }
+      for (unsigned int *count : {&n, &found, &closed})
+        *count = dealii::Utilities::MPI::sum(*count, p.communicator);
+      smallest = dealii::Utilities::MPI::min(smallest, p.communicator);
+      largest  = dealii::Utilities::MPI::max(largest, p.communicator);
       std::ostringstream text;
       text << "  contact pair " << pair + 1 << ": " << found << " of " << n
            << (p.surfaces->has_points(pair) ? " integration points" : " slave nodes") << " find a master point";
@@ -304,7 +312,10 @@ namespace Nodus
 
   const std::vector<ContactFields> &ContactProblem::contact_fields() const
   {
-    return implementation_->fields;
+    auto &p = *implementation_;
+    if (p.whole_fields.empty())
+      p.whole_fields = whole_surface(p.fields, p.communicator);
+    return p.whole_fields;
   }
 
   const std::vector<ContactResultants> &ContactProblem::contact_resultants() const

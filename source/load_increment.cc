@@ -1,6 +1,8 @@
 #include <nodus/contact/site_values.h>
 #include <nodus/contact_problem_implementation.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
 #include <sstream>
 
@@ -8,14 +10,6 @@ namespace Nodus
 {
   namespace
   {
-    double largest_entry(const std::vector<Vector3> &a, const std::vector<Vector3> &b)
-    {
-      double largest = 0.;
-      for (unsigned int i = 0; i < a.size(); ++i)
-        largest = std::max(largest, (a[i] - b[i]).norm());
-      return largest;
-    }
-
     /// Newton iterations without progress after which a merged iteration is given up.
     constexpr unsigned int patience = 8;
   } // namespace
@@ -52,7 +46,6 @@ namespace Nodus
   void ContactProblem::Implementation::solve_loops()
   {
     status->begin_increment();
-    surfaces->gather(committed.block(0), u_start);
     const Newton newton(parameters.newton, merged.any() ? patience : 0);
 
     FixedPointLoop geometry("geometry", parameters.geometry_loop);
@@ -66,7 +59,7 @@ namespace Nodus
         {
           const auto timer = profile.time(Phase::status);
           if (!merged.threshold)
-            status->freeze_threshold(site_pressure(weights, *status, state.lambda));
+            status->freeze_threshold(site_pressure(*surfaces, weights, *status, state.lambda));
           status->begin_loop(merged.status);
         }
 
@@ -98,7 +91,7 @@ namespace Nodus
     if (merged.status)
       return true;
     const Status::Update update = update_statuses();
-    return loop.finished(update.changes, update.changes > 0 ? site_locus(update.sites.front()) : "");
+    return loop.finished(update.changes, first_changed);
   }
 
   Status::Update ContactProblem::Implementation::update_statuses(const bool closing_only)
@@ -108,20 +101,18 @@ namespace Nodus
         status_input(parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state), closing_only);
     if (update.changes > 0)
     {
-      console.remark(std::to_string(update.changes) + " statuses changed, first at " +
-                     site_locus(update.sites.front()));
+      const std::vector<std::string> loci = site_loci(update.sites, 3);
+      first_changed                       = loci.front();
+      console.remark(std::to_string(update.changes) + " statuses changed, first at " + first_changed);
       if (update.cycles)
-      {
-        std::string nodes;
-        for (const unsigned int k : cycling)
-          nodes += (nodes.empty() ? "" : "; ") + site_locus(k);
         throw SolverFailure(
             (merged.status ? "the statuses cycle" : "the status loop cycles, also with one change at a time") +
-            std::string("; the nodes that change back and forth: ") + nodes);
-      }
+            std::string("; the nodes that change back and forth: ") + cycling);
       if (update.period > 0)
       {
-        cycling.assign(update.sites.begin(), update.sites.begin() + std::min<std::size_t>(3, update.sites.size()));
+        cycling.clear();
+        for (const std::string &locus : loci)
+          cycling += (cycling.empty() ? "" : "; ") + locus;
         console.remark("these statuses were met " + std::to_string(update.period) +
                        (merged.status ? " iterations ago" : " passes ago: from here one node changes at a time"));
       }
@@ -137,11 +128,12 @@ namespace Nodus
     if (!status->has_friction())
       return loop.finished(0., "");
     const auto           timer  = profile.time(Phase::status);
-    const Status::Change change = status->threshold_change(site_pressure(weights, *status, state.lambda));
+    const Status::Change change = status->threshold_change(site_pressure(*surfaces, weights, *status, state.lambda));
+    const std::string    worst  = site_locus(change.site);
     std::ostringstream   text;
-    text << "threshold changes by " << change.value << ", most at " << site_locus(change.site);
+    text << "threshold changes by " << change.value << ", most at " << worst;
     console.remark(text.str());
-    return loop.finished(change.value, site_locus(change.site));
+    return loop.finished(change.value, worst);
   }
 
   bool ContactProblem::Implementation::geometry_converged(FixedPointLoop &loop)
@@ -149,30 +141,45 @@ namespace Nodus
     ++counts.geometry;
     if (merged.geometry)
       return true;
-    const auto           timer = profile.time(Phase::pairing);
-    std::vector<Vector3> u;
-    surfaces->gather(solution.block(0), u);
-    const double change = largest_entry(u, u_geometry);
-    const double step   = largest_entry(u_geometry, u_start);
+    const auto   timer = profile.time(Phase::pairing);
+    std::string  worst;
+    const double change = largest_difference(solution.block(0), u_geometry, &worst);
+    const double step   = largest_difference(u_geometry, committed.block(0));
     const double value  = change <= 1e-12 * length_scale ? 0. : step > 0. ? change / step : 1.;
 
-    unsigned int worst = 0;
-    for (unsigned int i = 1; i < u.size(); ++i)
-      if ((u[i] - u_geometry[i]).norm() > (u[worst] - u_geometry[worst]).norm())
-        worst = i;
     std::ostringstream text;
-    text << "geometry changes by " << value << " of the step, most at "
-         << (u.empty() ? "" : coordinates(surfaces->nodes()[worst].X));
+    text << "geometry changes by " << value << " of the step, most at " << worst;
     console.remark(text.str());
 
     // The solution of two passes ago again, while it differs from that of the last one: a 2-cycle.
     if (loop.counter() >= 3 && value > parameters.geometry_loop.tolerance &&
-        largest_entry(u, u_before_geometry) <= 1e-6 * change)
+        largest_difference(solution.block(0), u_before_geometry) <= 1e-6 * change)
       throw SolverFailure("the geometry loop cycles with period 2, criterion " + std::to_string(value) + ", worst at " +
-                          coordinates(surfaces->nodes()[worst].X) +
+                          worst +
                           ": a slave node crosses an edge of the faceted master and back; try 'Normal = averaged' or "
                           "smaller increments");
-    return loop.finished(value, u.empty() ? "" : coordinates(surfaces->nodes()[worst].X));
+    return loop.finished(value, worst);
+  }
+
+  /// Largest difference of two displacements at a surface node, and where it is. Collective.
+  double
+  ContactProblem::Implementation::largest_difference(const Vector &a, const Vector &b, std::string *const worst) const
+  {
+    std::vector<Vector3> u, v;
+    surfaces->gather(a, u);
+    surfaces->gather(b, v);
+    double      largest = 0.;
+    std::string here    = u.empty() ? "" : coordinates(surfaces->nodes()[0].X);
+    for (unsigned int i = 0; i < u.size(); ++i)
+      if (const double difference = (u[i] - v[i]).norm(); difference > largest)
+      {
+        largest = difference;
+        here    = coordinates(surfaces->nodes()[i].X);
+      }
+    const auto all = dealii::Utilities::MPI::min_max_avg(largest, communicator);
+    if (worst != nullptr)
+      *worst = dealii::Utilities::MPI::broadcast(communicator, here, all.max_index);
+    return all.max;
   }
 
   void ContactProblem::Implementation::commit()

@@ -32,9 +32,11 @@ namespace Nodus
   {
     const auto    timer  = profile.time(Phase::pairing);
     const Pairing before = pairing;
+    geometry.reset(); // it refers to the faces
+    surfaces->fetch_masters(solution.block(0));
     gather_state();
     u_before_geometry = u_geometry;
-    surfaces->gather(solution.block(0), u_geometry);
+    u_geometry        = solution.block(0);
 
     const auto              &pairs = parameters.contact_pairs;
     const std::vector<Point> X     = surfaces->positions(std::vector<Vector3>(surfaces->nodes().size()));
@@ -60,10 +62,10 @@ namespace Nodus
 
     // Lambda keeps its direction in space and its length in the new tangent planes, lambda the nodal force; nodes
     // without partner lose all.
-    const auto owned = surfaces->owned_slave_nodes();
-    for (unsigned int k = owned.first; k < owned.second; ++k)
+    for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
     {
-      Vector3 Lambda;
+      const DoFIndex multiplier = surfaces->multiplier(k);
+      Vector3        Lambda;
       for (unsigned int i = 0; i < 2; ++i)
         Lambda += state.Lambda[k][i] * before[k].tangent[i];
       double component[2] = {0., 0.};
@@ -72,8 +74,8 @@ namespace Nodus
           component[i] = Lambda * pairing[k].tangent[i];
       const double norm = std::hypot(component[0], component[1]);
       for (unsigned int i = 0; i < 2; ++i)
-        solution.block(2)(2 * k + i) = norm > 0. ? component[i] * Lambda.norm() / norm : 0.;
-      solution.block(1)(k) = pairing[k].found ? state.lambda[k] * nodal_area[k] / weights.area()[k] : 0.;
+        solution.block(2)(2 * multiplier + i) = norm > 0. ? component[i] * Lambda.norm() / norm : 0.;
+      solution.block(1)(multiplier) = pairing[k].found ? state.lambda[k] * nodal_area[k] / weights.area()[k] : 0.;
     }
     nodal_area = weights.area();
     solution.block(1).compress(dealii::VectorOperation::insert);
@@ -83,25 +85,25 @@ namespace Nodus
 
   void ContactProblem::Implementation::gather_state()
   {
-    std::vector<Vector3> u;
+    std::vector<Vector3> u, u_start;
     surfaces->gather(solution.block(0), u);
+    surfaces->gather(committed.block(0), u_start);
     state.x = surfaces->positions(u);
     state.increment.resize(u.size());
     state.prescribed.resize(u.size());
     for (unsigned int i = 0; i < u.size(); ++i)
       state.increment[i] = u[i] - u_start[i];
 
-    // Multipliers live with their owners; the nodal arrays are replicated.
-    const unsigned int  n     = surfaces->slave_nodes().size();
-    const auto          owned = surfaces->owned_slave_nodes();
+    const unsigned int  n = surfaces->slave_nodes().size();
     std::vector<double> all(3 * n, 0.);
-    for (unsigned int k = owned.first; k < owned.second; ++k)
+    for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
     {
-      all[3 * k]     = solution.block(1)(k);
-      all[3 * k + 1] = solution.block(2)(2 * k);
-      all[3 * k + 2] = solution.block(2)(2 * k + 1);
+      const DoFIndex multiplier = surfaces->multiplier(k);
+      all[3 * k]                = solution.block(1)(multiplier);
+      all[3 * k + 1]            = solution.block(2)(2 * multiplier);
+      all[3 * k + 2]            = solution.block(2)(2 * multiplier + 1);
     }
-    dealii::Utilities::MPI::sum(all, communicator, all);
+    surfaces->slave_exchange().update(all, 3);
     state.lambda.resize(n);
     state.Lambda.resize(n);
     for (unsigned int k = 0; k < n; ++k)
@@ -157,15 +159,14 @@ namespace Nodus
     std::vector<double> before(status->size());
     for (unsigned int k = 0; k < before.size(); ++k)
       before[k] = status->friction(k) ? status->threshold(k) : 0.;
-    status->freeze_threshold(site_pressure(weights, *status, state.lambda));
+    status->freeze_threshold(site_pressure(*surfaces, weights, *status, state.lambda));
 
     // Sticking nodes keep their friction traction mu lambda Lambda: as unknown of the iteration it is linear.
-    const auto owned = surfaces->owned_slave_nodes();
     for (const ContactPoint &point : weights.points())
-      if (const unsigned int k = point.slaves[0]; point.slaves.size() == 1 && k >= owned.first && k < owned.second &&
+      if (const unsigned int k = point.slaves[0]; point.slaves.size() == 1 && surfaces->is_owned(k) &&
                                                   before[k] != 0. && status->friction(k) && status->stick(k))
         for (unsigned int i = 0; i < 2; ++i)
-          solution.block(2)(2 * k + i) = state.Lambda[k][i] * before[k] / status->threshold(k);
+          solution.block(2)(2 * surfaces->multiplier(k) + i) = state.Lambda[k][i] * before[k] / status->threshold(k);
     solution.block(2).compress(dealii::VectorOperation::insert);
     gather_state();
   }
@@ -228,15 +229,40 @@ namespace Nodus
     solution.add(factor, correction);
   }
 
+  /// Where the first of the sites is that the ranks name. Collective; an invalid number names none.
   std::string ContactProblem::Implementation::site_locus(const unsigned int site) const
   {
-    if (site >= surfaces->n_sites())
-      return "";
-    const unsigned int p    = surfaces->pair(site);
-    const auto        &name = parameters.contact_pairs[p].name;
-    return (surfaces->is_point(site) ? "integration point " : "slave node ") +
-           coordinates(surfaces->site_position(site)) + " of contact pair " + std::to_string(p + 1) +
-           (name.empty() ? "" : " ('" + name + "')");
+    const auto loci =
+        site_loci(site < surfaces->n_sites() ? std::vector<unsigned int>{site} : std::vector<unsigned int>(), 1);
+    return loci.empty() ? "" : loci.front();
+  }
+
+  /// Where the first @p n of the @p sites of all ranks are, owned ones. Collective.
+  std::vector<std::string> ContactProblem::Implementation::site_loci(const std::vector<unsigned int> &sites,
+                                                                     const unsigned int               n) const
+  {
+    std::vector<unsigned int> ordered(sites);
+    std::sort(ordered.begin(),
+              ordered.end(),
+              [&](const auto a, const auto b) { return surfaces->order(a) < surfaces->order(b); });
+    std::vector<std::pair<DoFIndex, std::string>> first;
+    for (unsigned int i = 0; i < std::min<std::size_t>(n, ordered.size()); ++i)
+    {
+      const unsigned int site = ordered[i], p = surfaces->pair(site);
+      const auto        &name = parameters.contact_pairs[p].name;
+      first.emplace_back(surfaces->order(site),
+                         (surfaces->is_point(site) ? "integration point " : "slave node ") +
+                             coordinates(surfaces->site_position(site)) + " of contact pair " + std::to_string(p + 1) +
+                             (name.empty() ? "" : " ('" + name + "')"));
+    }
+    std::vector<std::pair<DoFIndex, std::string>> all;
+    for (const auto &part : dealii::Utilities::MPI::all_gather(communicator, first))
+      all.insert(all.end(), part.begin(), part.end());
+    std::sort(all.begin(), all.end());
+    std::vector<std::string> loci;
+    for (unsigned int i = 0; i < std::min<std::size_t>(n, all.size()); ++i)
+      loci.push_back(all[i].second);
+    return loci;
   }
 
   std::string ContactProblem::Implementation::unknown_locus(const DoFIndex flat_index) const
@@ -244,9 +270,13 @@ namespace Nodus
     const BlockLayout &layout = surfaces->layout();
     if (flat_index >= layout.lambda(0))
     {
-      const bool         pressure = flat_index < layout.Lambda(0, 0);
-      const unsigned int k        = pressure ? flat_index - layout.lambda(0) : (flat_index - layout.Lambda(0, 0)) / 2;
-      return (pressure ? "the contact multiplier of " : "the friction multiplier of ") + site_locus(k) +
+      const bool     pressure   = flat_index < layout.Lambda(0, 0);
+      const DoFIndex multiplier = pressure ? flat_index - layout.lambda(0) : (flat_index - layout.Lambda(0, 0)) / 2;
+      unsigned int   here       = dealii::numbers::invalid_unsigned_int;
+      for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
+        if (surfaces->multiplier(k) == multiplier)
+          here = k;
+      return (pressure ? "the contact multiplier of " : "the friction multiplier of ") + site_locus(here) +
              ": this constraint repeats another one (over-constraint)";
     }
     std::map<DoFIndex, Point> points;

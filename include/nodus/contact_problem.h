@@ -36,7 +36,8 @@ namespace Nodus
     /// Pairs the surfaces in the reference configuration and prints what a run would start from.
     void validate();
 
-    /// State of the last converged increment, the same on every rank.
+    /// State of the last converged increment, the same on every rank. Collective: the surfaces are brought together for
+    /// whoever asks.
     const std::vector<ContactFields>     &contact_fields() const;
     const std::vector<ContactResultants> &contact_resultants() const;
     const std::vector<std::pair<std::string, Vector3>>                        &

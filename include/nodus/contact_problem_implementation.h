@@ -52,17 +52,19 @@ namespace Nodus
     unsigned int solve(BlockVector &correction, double relative_tolerance) override;
     void         advance(double factor, const BlockVector &correction) override;
 
-    Norms       assemble_contact(const dealii::AffineConstraints<double> &constraints);
-    void        follow_pressure();
-    void        gather_state();
-    std::string site_locus(unsigned int site) const;
-    std::string unknown_locus(DoFIndex flat_index) const;
-    void        commit();
-    void        roll_back();
-    void        write(unsigned int increment, bool last);
-    void        update_results();
-    void        summary();
-    std::string report_profile(bool converged);
+    Norms                    assemble_contact(const dealii::AffineConstraints<double> &constraints);
+    void                     follow_pressure();
+    void                     gather_state();
+    std::string              site_locus(unsigned int site) const;
+    std::vector<std::string> site_loci(const std::vector<unsigned int> &sites, unsigned int n) const;
+    double                   largest_difference(const Vector &a, const Vector &b, std::string *worst = nullptr) const;
+    std::string              unknown_locus(DoFIndex flat_index) const;
+    void                     commit();
+    void                     roll_back();
+    void                     write(unsigned int increment, bool last);
+    void                     update_results();
+    void                     summary();
+    std::string              report_profile(bool converged);
 
     const Parameters parameters;
     MPI_Comm         communicator;
@@ -99,19 +101,19 @@ namespace Nodus
     Pairing             committed_pairing;          ///< at the start of the load step
     std::vector<double> nodal_area, committed_area; ///< that the multipliers of solution and committed refer to
 
-    ContactState         state;
-    ContactResidual      residual;
-    std::vector<Vector3> u_start, u_geometry,
-        u_before_geometry;             ///< surface nodes: step start, this and the previous pairing
-    std::vector<unsigned int> cycling; ///< some of the nodes of the last status cycle
-    bool                      paired_before = false, newton_starts = true;
-    double                    prescribed_before = 0.; ///< still to be met at the last assembly, relative
-    MergedLoops               merged;                 ///< in this attempt at the increment
+    ContactState    state;
+    ContactResidual residual;
+    Vector          u_geometry, u_before_geometry; ///< displacements of this and the previous pairing
+    std::string     first_changed, cycling;        ///< sites of the last change of statuses, and of the last cycle
+    bool            paired_before = false, newton_starts = true;
+    double          prescribed_before = 0.; ///< still to be met at the last assembly, relative
+    MergedLoops     merged;                 ///< in this attempt at the increment
 
     double          time = 0.;
     IterationCounts pass, counts; ///< where the loops stand, and totals of the increment
 
-    std::vector<ContactFields>                   fields;
+    std::vector<ContactFields>                   fields;       ///< of this rank's part of the surfaces
+    std::vector<ContactFields>                   whole_fields; ///< of all ranks, once somebody asked for them
     std::vector<ContactResultants>               resultants;
     std::vector<std::pair<std::string, Vector3>> reactions;
     std::function<void(unsigned int, double)>    callback;

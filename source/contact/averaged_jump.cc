@@ -8,6 +8,8 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 namespace Nodus
 {
@@ -27,15 +29,15 @@ namespace Nodus
     /// What a slave face adds to the rows of its nodes, before the division by the area.
     struct FaceRows
     {
-      unsigned int              pair, face;
-      std::vector<unsigned int> nodes;   ///< slave nodes of the face, then master nodes
-      std::vector<double>       weights; ///< per slave node of the face: weight of each node, area, full area
-      std::vector<double>       vectors; ///< per slave node of the face: offset, normal
+      unsigned int          pair, number; ///< of the face
+      std::vector<DoFIndex> nodes;        ///< first degrees of freedom: slave nodes of the face, then master nodes
+      std::vector<double>   weights;      ///< per slave node of the face: weight of each node, area, full area
+      std::vector<double>   vectors;      ///< per slave node of the face: offset, normal
 
       template <typename Archive>
       void serialize(Archive &archive, const unsigned int)
       {
-        archive &pair &face &nodes &weights &vectors;
+        archive &pair &number &nodes &weights &vectors;
       }
     };
 
@@ -81,6 +83,7 @@ namespace Nodus
 
     /// Integrates one face; @p all_psi is overwritten.
     FaceRows integrate(const ContactPairParameters    &pair,
+                       const ContactSurfaces          &surfaces,
                        const SurfaceGeometry          &slave,
                        const unsigned int              f,
                        const SurfaceGeometry          &master,
@@ -89,13 +92,16 @@ namespace Nodus
                        const std::vector<Point>       &measure,
                        std::vector<double>            &all_psi)
     {
-      const unsigned int degree = slave.degree(), n = (degree + 1) * (degree + 1);
-      const SurfaceFace &face = slave.face(f);
-      FaceRows           result{0, f, face.nodes, {}, {}};
+      const unsigned int        degree = slave.degree(), n = (degree + 1) * (degree + 1);
+      const SurfaceFace        &face = slave.face(f);
+      FaceRows                  result{0, face.number, {}, {}, {}};
+      std::vector<unsigned int> nodes(face.nodes);
       for (const MortarPoint &point : points)
         for (const unsigned int node : master.face(point.master.face).nodes)
-          if (std::find(result.nodes.begin() + n, result.nodes.end(), node) == result.nodes.end())
-            result.nodes.push_back(node);
+          if (std::find(nodes.begin() + n, nodes.end(), node) == nodes.end())
+            nodes.push_back(node);
+      for (const unsigned int node : nodes)
+        result.nodes.push_back(surfaces.nodes()[node].dofs[0]);
 
       // psi = part (D M^-1)^T phi + (1 - part) hat, with M and D over the covered part
       Matrix              mass = Matrix::Zero(n, n);
@@ -136,8 +142,7 @@ namespace Nodus
                                    : -master.normal(point.master.face, point.master.xi, point.master.eta);
         unsigned int  column[9];
         for (unsigned int b = 0; b < n; ++b)
-          column[b] =
-              std::find(result.nodes.begin() + n, result.nodes.end(), master_face.nodes[b]) - result.nodes.begin();
+          column[b] = std::find(nodes.begin() + n, nodes.end(), master_face.nodes[b]) - nodes.begin();
         for (unsigned int a = 0; a < n; ++a)
         {
           double *const row  = result.weights.data() + a * n_columns;
@@ -232,40 +237,65 @@ namespace Nodus
                                    geometry.reach[p],
                                    pairs[p].projection_tolerance,
                                    points);
-        mine.push_back(integrate(
-            pairs[p], geometry.slave[p], f, geometry.master[p], points, coverage, measure, faces_.back().psi));
+        mine.push_back(integrate(pairs[p],
+                                 surfaces,
+                                 geometry.slave[p],
+                                 f,
+                                 geometry.master[p],
+                                 points,
+                                 coverage,
+                                 measure,
+                                 faces_.back().psi));
         mine.back().pair = p;
       }
     }
     if (!any)
       return;
 
-    // Sums over the faces of a node, in an order that does not depend on the ranks.
-    const unsigned int  n = (surfaces.degree() + 1) * (surfaces.degree() + 1);
-    std::vector<double> full(rows_.size(), 0.);
-    for (const auto &part : dealii::Utilities::MPI::all_gather(communicator, mine))
-      for (const FaceRows &face : part)
+    // Whoever owns a node sums over its faces, in an order that does not depend on the ranks.
+    const unsigned int                            n = (surfaces.degree() + 1) * (surfaces.degree() + 1);
+    std::map<unsigned int, std::vector<FaceRows>> outgoing;
+    for (unsigned int i = 0; i < mine.size(); ++i)
+    {
+      std::set<unsigned int> owners;
+      for (const unsigned int node : surfaces.slave_faces(faces_[i].pair)[faces_[i].face].nodes)
+        owners.insert(surfaces.nodes()[node].owner);
+      for (const unsigned int owner : owners)
+        outgoing[owner].push_back(mine[i]);
+    }
+    mine.clear();
+    for (auto &[other, part] : dealii::Utilities::MPI::some_to_some(communicator, outgoing))
+      mine.insert(mine.end(), part.begin(), part.end());
+    std::sort(mine.begin(),
+              mine.end(),
+              [](const FaceRows &a, const FaceRows &b)
+              { return std::make_pair(a.pair, a.number) < std::make_pair(b.pair, b.number); });
+
+    std::vector<double> full(surfaces.n_owned_slave_nodes(), 0.);
+    for (const FaceRows &face : mine)
+    {
+      const unsigned int n_columns = face.nodes.size() + 2;
+      for (unsigned int a = 0; a < n; ++a)
       {
-        const unsigned int n_columns = face.nodes.size() + 2;
-        for (unsigned int a = 0; a < n; ++a)
+        const unsigned int k = surfaces.slave_number(surfaces.node(face.nodes[a]));
+        if (!surfaces.is_owned(k))
+          continue;
+        Row                &row = rows_[k];
+        const double *const w   = face.weights.data() + a * n_columns;
+        for (unsigned int b = 0; b < face.nodes.size(); ++b)
+          if (w[b] != 0.)
+            add(b < n ? row.slave : row.master, surfaces.node(face.nodes[b]), w[b]);
+        row.area += w[n_columns - 2];
+        full[k] += w[n_columns - 1];
+        for (unsigned int c = 0; c < dim; ++c)
         {
-          const unsigned int  k   = surfaces.slave_number(face.nodes[a]);
-          Row                &row = rows_[k];
-          const double *const w   = face.weights.data() + a * n_columns;
-          for (unsigned int b = 0; b < face.nodes.size(); ++b)
-            if (w[b] != 0.)
-              add(b < n ? row.slave : row.master, face.nodes[b], w[b]);
-          row.area += w[n_columns - 2];
-          full[k] += w[n_columns - 1];
-          for (unsigned int c = 0; c < dim; ++c)
-          {
-            row.offset[c] += face.vectors[6 * a + c];
-            row.normal[c] += face.vectors[6 * a + 3 + c];
-          }
+          row.offset[c] += face.vectors[6 * a + c];
+          row.normal[c] += face.vectors[6 * a + 3 + c];
         }
       }
+    }
 
-    for (unsigned int k = 0; k < rows_.size(); ++k)
+    for (unsigned int k = 0; k < full.size(); ++k)
     {
       Row &row = rows_[k];
       if (!(row.area > smallest_coverage * full[k]))
@@ -286,5 +316,12 @@ namespace Nodus
       row.offset /= row.area;
       row.normal /= row.normal.norm();
     }
+
+    std::vector<double> area(rows_.size());
+    for (unsigned int k = 0; k < rows_.size(); ++k)
+      area[k] = rows_[k].area;
+    surfaces.slave_exchange().update(area);
+    for (unsigned int k = 0; k < rows_.size(); ++k)
+      rows_[k].area = area[k];
   }
 } // namespace Nodus

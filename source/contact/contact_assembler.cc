@@ -120,7 +120,7 @@ namespace Nodus
   {
     const BlockLayout &layout  = surfaces_.layout();
     const unsigned int rank    = dealii::Utilities::MPI::this_mpi_process(layout.communicator);
-    const unsigned int n       = layout.n_slave_nodes;
+    const unsigned int n       = surfaces_.slave_nodes().size();
     const unsigned int n_sites = surfaces_.n_sites();
     system.contact.clear();
     system.variation.clear();
@@ -129,15 +129,15 @@ namespace Nodus
     const auto d_threshold =
         unsymmetric ? threshold_derivative() : std::vector<std::vector<std::pair<unsigned int, double>>>();
 
-    // Residual and right-hand side: three components of each jump, then lambda and two Lambda of each slave node.
-    const unsigned int  n_jump = 3 * n_sites;
-    std::vector<double> residual(n_jump + 3 * n, 0.), rhs(residual.size(), 0.), friction_weight(n, 0.);
+    // Residual and right-hand side: three components of each jump; lambda, two Lambda and the friction weight of each
+    // slave node. The points of this rank add to ghosts, too.
+    std::vector<double> jump_residual(3 * n_sites, 0.), jump_rhs(3 * n_sites, 0.);
+    std::vector<double> law_residual(4 * n, 0.), law_rhs(3 * n, 0.);
 
-    std::vector<PointNode>    nodes;
-    std::vector<PointJump>    jumps;
-    std::vector<unsigned int> position; // of the point's unknowns in residual and rhs
-    LocalMatrix               A;
-    LocalVector               r, b, r_t; // r_t: derivative of r with respect to the threshold at the point
+    std::vector<PointNode> nodes;
+    std::vector<PointJump> jumps;
+    LocalMatrix            A;
+    LocalVector            r, b, r_t; // r_t: derivative of r with respect to the threshold at the point
     for (const ContactPoint &point : weights_.points())
     {
       if (point.owner != rank)
@@ -218,7 +218,6 @@ namespace Nodus
       r.setZero(n_unknowns);
       r_t.setZero(n_unknowns);
       b.setZero(n_unknowns);
-      position.resize(n_unknowns);
       const double  W = point.weight, Wt = point.weight * threshold;
       const Column3 pi_t = slips ? Column3(K_B * slip_slip * (h_tau / -threshold)) : pi; // h_tau ~ 1/threshold
       for (unsigned int a = 0; a < n_jumps; ++a)
@@ -230,8 +229,8 @@ namespace Nodus
         r_t.segment<3>(ia) = -W * i.projector * ((n_nodes > 1 ? i.stick : 0.) * Lambda_stick + i.slip * pi) -
                              Wt * i.slip * i.projector * pi_t;
         b.segment<3>(ia) = eigen(jump_.jump(i.site, state.prescribed));
-        for (unsigned int l = 0; l < 3; ++l)
-          position[ia + l] = 3 * i.site + l;
+        Assert(i.contact == 0. || jump_.begin(i.site) != jump_.end(i.site),
+               dealii::ExcMessage("the partner of a site in contact is not on this rank"));
 
         for (unsigned int c = 0; c < n_nodes; ++c)
         {
@@ -251,7 +250,7 @@ namespace Nodus
       {
         const PointNode &i  = nodes[a];
         const unsigned   ia = first + 3 * a;
-        friction_weight[i.slave] -= std::abs(i.stick + i.slip) * Wt;
+        law_residual[4 * i.slave + 3] -= std::abs(i.stick + i.slip) * Wt;
         r(ia) = -W * i.open * lambda_o / h_n - W * i.contact * distance;
         r.segment<2>(ia + 1) =
             -Wt * i.stick * i.tangent * slip_stick + (Wt / h_tau) * i.slip * i.tangent * (Lambda_slip - pi);
@@ -261,9 +260,6 @@ namespace Nodus
               -W * i.stick * i.tangent * slip_stick + (2. * W / h_tau) * i.slip * i.tangent * (Lambda_slip - pi);
         for (unsigned int t = 0; t < 2; ++t)
           r(ia + 1 + t) -= W * i.void_tangent[t] * Lambda_void[t].dot(i.axis[t]);
-        for (unsigned int l = 0; l < 3; ++l)
-          position[ia + l] = n_jump + 3 * i.slave + l;
-
         for (unsigned int c = 0; c < n_nodes; ++c)
         {
           const PointNode &j  = nodes[c];
@@ -278,10 +274,18 @@ namespace Nodus
       }
 
       const LocalVector local_rhs = -(r + A * b);
-      for (unsigned int i = 0; i < n_unknowns; ++i)
+      for (unsigned int l = 0; l < 3; ++l)
       {
-        residual[position[i]] += r(i);
-        rhs[position[i]] += local_rhs(i);
+        for (unsigned int a = 0; a < n_jumps; ++a)
+        {
+          jump_residual[3 * jumps[a].site + l] += r(3 * a + l);
+          jump_rhs[3 * jumps[a].site + l] += local_rhs(3 * a + l);
+        }
+        for (unsigned int a = 0; a < n_nodes; ++a)
+        {
+          law_residual[4 * nodes[a].slave + l] += r(first + 3 * a + l);
+          law_rhs[3 * nodes[a].slave + l] += local_rhs(first + 3 * a + l);
+        }
       }
 
       // Expand the jumps to displacements, free components only: rows and columns of prescribed ones drop out.
@@ -289,7 +293,8 @@ namespace Nodus
       {
         if (local >= first)
         {
-          const unsigned int k = nodes[(local - first) / 3].slave, l = (local - first) % 3;
+          const DoFIndex     k = surfaces_.multiplier(nodes[(local - first) / 3].slave);
+          const unsigned int l = (local - first) % 3;
           f(l == 0 ? layout.lambda(k) : layout.Lambda(k, l - 1), 1.);
           return;
         }
@@ -315,61 +320,58 @@ namespace Nodus
             for (const auto &[k, derivative] : d_threshold[jump.site])
               for (unsigned int i = 0; i < n_unknowns; ++i)
                 if (r_t(i) != 0.)
-                  for_each_unknown(
-                      i,
-                      [&](const DoFIndex row, const double weight)
-                      { system.variation.add(row, layout.lambda(k), weight * r_t(i) * jump.contact * derivative); });
+                  for_each_unknown(i,
+                                   [&](const DoFIndex row, const double weight) {
+                                     system.variation.add(row,
+                                                          layout.lambda(surfaces_.multiplier(k)),
+                                                          weight * r_t(i) * jump.contact * derivative);
+                                   });
     }
 
-    dealii::Utilities::MPI::sum(residual, layout.communicator, residual);
-    dealii::Utilities::MPI::sum(rhs, layout.communicator, rhs);
-    dealii::Utilities::MPI::sum(friction_weight, layout.communicator, friction_weight);
-
-    const auto owned = surfaces_.owned_slave_nodes();
-    system.multiplier_scale.assign(3 * (owned.second - owned.first), 1.);
-    for (unsigned int k = owned.first; k < owned.second; ++k)
-    {
-      const double *const row = rhs.data() + n_jump + 3 * k;
-      system.rhs.block(1)(k)  = row[0];
-      for (unsigned int i = 0; i < 2; ++i)
-      {
-        system.rhs.block(2)(2 * k + i) = row[1 + i];
-        if (friction_weight[k] > 0.)
-          system.multiplier_scale[3 * (k - owned.first) + 1 + i] = weights_.area()[k] / friction_weight[k];
-      }
-    }
-    for (unsigned int s = 0; s < n_sites; ++s)
-      if (surfaces_.site_owner(s) == rank)
-        for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
-          for (unsigned int c = 0; c < dim; ++c)
-            if (!surfaces_.fixed(e->node, c))
-              system.rhs.block(0)(surfaces_.nodes()[e->node].dofs[c]) += e->weight * rhs[3 * s + c];
-    system.rhs.block(0).compress(dealii::VectorOperation::add);
-    system.rhs.block(1).compress(dealii::VectorOperation::insert);
-    system.rhs.block(2).compress(dealii::VectorOperation::insert);
-
-    ContactResidual result;
-    result.jump.resize(n_sites);
-    result.lambda.resize(n);
-    result.Lambda.resize(n);
-    for (unsigned int s = 0; s < n_sites; ++s)
-      for (unsigned int c = 0; c < dim; ++c)
-        result.jump[s][c] = residual[3 * s + c];
+    system.rhs.block(1) = 0.;
+    system.rhs.block(2) = 0.;
     for (unsigned int k = 0; k < n; ++k)
     {
-      const double *const row = residual.data() + n_jump + 3 * k;
-      result.lambda[k]        = row[0];
-      result.Lambda[k]        = {{row[1], row[2]}};
+      const DoFIndex      multiplier = surfaces_.multiplier(k);
+      const double *const row        = law_rhs.data() + 3 * k;
+      system.rhs.block(1)(multiplier) += row[0];
+      for (unsigned int i = 0; i < 2; ++i)
+        system.rhs.block(2)(2 * multiplier + i) += row[1 + i];
     }
-    result.friction_weight = std::move(friction_weight);
+    for (unsigned int s = 0; s < n_sites; ++s)
+      for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (jump_rhs[3 * s + c] != 0. && !surfaces_.fixed(e->node, c))
+            system.rhs.block(0)(surfaces_.nodes()[e->node].dofs[c]) += e->weight * jump_rhs[3 * s + c];
+    system.rhs.compress(dealii::VectorOperation::add);
+
+    surfaces_.site_exchange().sum(jump_residual, 3);
+    surfaces_.slave_exchange().sum(law_residual, 4);
+    ContactResidual result;
+    result.jump.resize(n_sites);
+    for (unsigned int s = 0; s < n_sites; ++s)
+      for (unsigned int c = 0; c < dim; ++c)
+        result.jump[s][c] = jump_residual[3 * s + c];
+    for (unsigned int k = 0; k < n; ++k)
+    {
+      const double *const row = law_residual.data() + 4 * k;
+      result.lambda.push_back(row[0]);
+      result.Lambda.push_back({{row[1], row[2]}});
+      result.friction_weight.push_back(row[3]);
+    }
+
+    system.multiplier_scale.assign(3 * surfaces_.n_owned_slave_nodes(), 1.);
+    for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
+      if (result.friction_weight[k] > 0.)
+        for (unsigned int i = 1; i < 3; ++i)
+          system.multiplier_scale[3 * k + i] = weights_.area()[k] / result.friction_weight[k];
     return result;
   }
 
   void ContactAssembler::add_forces(const ContactResidual &residual, Vector &force) const
   {
-    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(surfaces_.layout().communicator);
     for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
-      if (surfaces_.site_owner(s) == rank)
+      if (surfaces_.is_owned(s))
         for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
           for (unsigned int c = 0; c < dim; ++c)
             force(surfaces_.nodes()[e->node].dofs[c]) += e->weight * residual.jump[s][c];
@@ -379,7 +381,7 @@ namespace Nodus
   double ContactAssembler::norm(const ContactResidual &residual, const double length) const
   {
     double norm = 0.;
-    for (unsigned int k = 0; k < residual.lambda.size(); ++k)
+    for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
     {
       const double area = weights_.area()[k];
       norm              = std::max(norm, std::abs(residual.lambda[k]) / (area * length));
@@ -392,6 +394,6 @@ namespace Nodus
       }
       norm = std::max(norm, std::hypot(residual.Lambda[k][0], residual.Lambda[k][1]) / scale);
     }
-    return norm;
+    return dealii::Utilities::MPI::max(norm, surfaces_.layout().communicator);
   }
 } // namespace Nodus

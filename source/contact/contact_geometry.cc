@@ -1,4 +1,5 @@
 #include <nodus/contact/contact_geometry.h>
+#include <nodus/contact/master_request.h>
 
 #include <deal.II/numerics/rtree.h>
 
@@ -57,14 +58,7 @@ namespace Nodus
       const double area = master.at(f, 0.5, 0.5).area_vector().norm();
       centre_normal_.push_back(master.normal(f, 0.5, 0.5));
       size_.push_back(std::sqrt(area));
-      std::vector<Point> corners;
-      for (const unsigned int n : master.face(f).nodes)
-        corners.push_back(master.positions()[n]);
-      corners.push_back(master.at(f, 0.5, 0.5).x);
-      dealii::BoundingBox<dim> box(corners);
-      // a quadratic or smoothed face may bulge beyond the box of its nodes by an eighth of its size
-      box.extend(size_.back() / 8);
-      leaves.emplace_back(box, f);
+      leaves.emplace_back(face_box(master.face(f), degree, master.positions()), f);
     }
     tree_->leaves = dealii::pack_rtree(leaves);
   }
@@ -78,7 +72,7 @@ namespace Nodus
     namespace bgi = boost::geometry::index;
     Projection best;
     double     best_distance = reach * reach;
-    for (auto leaf = tree_->leaves.qbegin(bgi::nearest(p, master_.n_faces())); leaf != tree_->leaves.qend(); ++leaf)
+    for (auto leaf = tree_->leaves.qbegin(bgi::nearest(p, master_.n_faces() + 1)); leaf != tree_->leaves.qend(); ++leaf)
     {
       if (squared_distance(leaf->first, p) > best_distance)
         break; // boxes come in ascending distance
@@ -87,7 +81,7 @@ namespace Nodus
         continue;
       double       xi, eta;
       const double d2 = closest_point(master_, f, p, xi, eta);
-      // neighbours share an edge point: the lower face index decides, on every rank alike
+      // neighbours share an edge point: the lower face number decides, on every rank alike
       const double tie = 1e-12 * size_[f] * size_[f];
       if (d2 < best_distance - tie || (d2 < best_distance + tie && f < best.face))
       {
@@ -131,15 +125,8 @@ namespace Nodus
       slave.emplace_back(surfaces.slave_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
       master.emplace_back(surfaces.master_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
       search.emplace_back(master[p]);
-      // automatic: a quarter of the diagonal of the master surface
-      std::vector<Point> corners;
-      for (const auto &face : surfaces.master_faces(p))
-        for (const unsigned int n : face.nodes)
-          corners.push_back(positions[n]);
-      const auto ends = dealii::BoundingBox<dim>(corners).get_boundary_points();
-      reach.push_back(pairs[p].search_distance > 0. ? pairs[p].search_distance
-                                                    : 0.25 * ends.first.distance(ends.second));
     }
+    reach = search_reach(pairs, surfaces, positions);
   }
 
   double closest_point(const SurfaceGeometry &surface, const unsigned int f, const Point &p, double &xi, double &eta)

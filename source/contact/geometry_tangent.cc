@@ -1,7 +1,5 @@
 #include <nodus/contact/geometry_tangent.h>
 
-#include <deal.II/base/mpi.h>
-
 #include <algorithm>
 
 namespace Nodus
@@ -248,8 +246,7 @@ namespace Nodus
 
   void GeometryTangent::add(const ContactState &state, const ContactResidual &residual, LinearSystem &system) const
   {
-    const unsigned int rank   = dealii::Utilities::MPI::this_mpi_process(surfaces_.layout().communicator);
-    const auto         active = [&](const unsigned int site) { return residual.jump[site].norm_square() > 0.; };
+    const auto active = [&](const unsigned int site) { return residual.jump[site].norm_square() > 0.; };
 
     Blocks blocks;
     for (const AveragedJump::Face &face : averaged_.faces())
@@ -281,7 +278,7 @@ namespace Nodus
 
     for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
     {
-      if (surfaces_.site_owner(s) != rank || !active(s) || !pairing_[s].master.found())
+      if (!surfaces_.is_owned(s) || !active(s) || !pairing_[s].master.found())
         continue;
       blocks.clear();
       const unsigned int p = surfaces_.pair(s);
@@ -358,15 +355,16 @@ namespace Nodus
     for (unsigned int r = 0; r < blocks.slaves.size(); ++r)
       for (unsigned int c = 0; c < n; ++c)
       {
-        const Vector3     &value = blocks.gap[r * blocks.stride + c];
-        const unsigned int node  = blocks.nodes[c];
+        const Vector3     &value      = blocks.gap[r * blocks.stride + c];
+        const unsigned int node       = blocks.nodes[c];
+        const DoFIndex     multiplier = surfaces_.multiplier(blocks.slaves[r]);
         for (unsigned int j = 0; j < dim; ++j)
           if (value[j] != 0.)
           {
             if (surfaces_.fixed(node, j))
-              system.rhs.block(1)(blocks.slaves[r]) -= value[j] * state.prescribed[node][j];
+              system.rhs.block(1)(multiplier) -= value[j] * state.prescribed[node][j];
             else
-              system.variation.add(layout.lambda(blocks.slaves[r]), nodes[node].dofs[j], value[j]);
+              system.variation.add(layout.lambda(multiplier), nodes[node].dofs[j], value[j]);
           }
       }
   }

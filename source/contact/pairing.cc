@@ -1,7 +1,6 @@
 #include <nodus/contact/pairing.h>
 
-#include <deal.II/base/mpi.h>
-
+#include <algorithm>
 #include <cmath>
 
 namespace Nodus
@@ -12,16 +11,12 @@ namespace Nodus
     /// a symmetry plane that projects slightly inside still moves with the plane.
     constexpr double free_weight = 0.1;
 
-    struct ProjectionRecord
+    /// A SitePairing as sent to other ranks.
+    struct PairingRecord
     {
-      unsigned int site, face;
-      double       xi, eta;
-
-      template <typename Archive>
-      void serialize(Archive &archive, const unsigned int)
-      {
-        archive &site &face &xi &eta;
-      }
+      unsigned int face; ///< number on the whole master surface
+      double       xi, eta, normal[dim], tangent[2][dim];
+      bool         found, tangent_free[2];
     };
 
     /// The frame around the geometric normal @p direction: tangents are orthogonal to its part in the free directions
@@ -58,7 +53,7 @@ namespace Nodus
       pairing.tangent_free = {{pairing.found && n_free >= 2, pairing.found && n_free == 3}};
     }
 
-    /// Position and averaged outward normal of every site.
+    /// Position and averaged outward normal of every site; complete for owned ones.
     struct Sites
     {
       std::vector<Point>   x;
@@ -138,31 +133,19 @@ namespace Nodus
                         const ContactGeometry                    &geometry,
                         const AveragedJump                       &averaged)
   {
-    const Sites                   sites(surfaces, geometry);
-    const MPI_Comm                communicator = surfaces.layout().communicator;
-    const unsigned int            rank         = dealii::Utilities::MPI::this_mpi_process(communicator);
-    std::vector<ProjectionRecord> mine;
-    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
-      if (surfaces.site_owner(s) == rank)
-      {
-        const unsigned int p = surfaces.pair(s);
-        const Projection   projection =
-            geometry.search[p].closest(sites.x[s], sites.normal[s], geometry.reach[p], pairs[p].projection_tolerance);
-        mine.push_back({s, projection.face, projection.xi, projection.eta});
-      }
-
+    const Sites sites(surfaces, geometry);
     sites_.assign(surfaces.n_sites(), SitePairing());
-    for (const auto &part : dealii::Utilities::MPI::all_gather(communicator, mine))
-      for (const ProjectionRecord &record : part)
-        sites_[record.site].master = {record.face, record.xi, record.eta};
-
     using Normal = ContactPairParameters::Normal;
     for (unsigned int s = 0; s < sites_.size(); ++s)
     {
-      SitePairing       &pairing  = sites_[s];
-      const unsigned int p        = surfaces.pair(s);
-      const bool         averages = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
-      const bool         paired   = averages ? averaged.covered(s) : pairing.master.found();
+      if (!surfaces.is_owned(s))
+        continue;
+      SitePairing       &pairing = sites_[s];
+      const unsigned int p       = surfaces.pair(s);
+      pairing.master =
+          geometry.search[p].closest(sites.x[s], sites.normal[s], geometry.reach[p], pairs[p].projection_tolerance);
+      const bool averages = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
+      const bool paired   = averages ? averaged.covered(s) : pairing.master.found();
       // A node of the integration point scheme needs a frame for its multipliers even where its own projection fails.
       const bool carries_frame = paired || (surfaces.has_points(p) && !surfaces.is_point(s));
       Vector3    normal        = sites.normal[s];
@@ -186,5 +169,49 @@ namespace Nodus
       pairing.found        = false;
       pairing.tangent_free = {{false, false}};
     }
+    share(surfaces);
+  }
+
+  void Pairing::share(const ContactSurfaces &surfaces)
+  {
+    std::vector<PairingRecord> records(sites_.size());
+    for (unsigned int s = 0; s < sites_.size(); ++s)
+      if (surfaces.is_owned(s))
+      {
+        const SitePairing &pairing = sites_[s];
+        PairingRecord     &record  = records[s];
+        record.face  = pairing.master.found() ? surfaces.master_faces(surfaces.pair(s))[pairing.master.face].number
+                                              : dealii::numbers::invalid_unsigned_int;
+        record.xi    = pairing.master.xi;
+        record.eta   = pairing.master.eta;
+        record.found = pairing.found;
+        for (unsigned int c = 0; c < dim; ++c)
+          record.normal[c] = pairing.normal[c];
+        for (unsigned int i = 0; i < 2; ++i)
+        {
+          record.tangent_free[i] = pairing.tangent_free[i];
+          for (unsigned int c = 0; c < dim; ++c)
+            record.tangent[i][c] = pairing.tangent[i][c];
+        }
+      }
+    surfaces.site_exchange().update(records);
+    for (unsigned int s = 0; s < sites_.size(); ++s)
+      if (!surfaces.is_owned(s))
+      {
+        const PairingRecord &record  = records[s];
+        SitePairing         &pairing = sites_[s];
+        const auto          &faces   = surfaces.master_faces(surfaces.pair(s));
+        const auto           face    = std::partition_point(
+            faces.begin(), faces.end(), [&](const SurfaceFace &f) { return f.number < record.face; });
+        if (face != faces.end() && face->number == record.face)
+          pairing.master = {static_cast<unsigned int>(face - faces.begin()), record.xi, record.eta};
+        pairing.found  = record.found;
+        pairing.normal = Vector3(record.normal);
+        for (unsigned int i = 0; i < 2; ++i)
+        {
+          pairing.tangent[i]      = Vector3(record.tangent[i]);
+          pairing.tangent_free[i] = record.tangent_free[i];
+        }
+      }
   }
 } // namespace Nodus

@@ -55,10 +55,14 @@ namespace Nodus
     }
   } // namespace
 
-  std::vector<double>
-  site_pressure(const SurfaceWeights &weights, const Status &status, const std::vector<double> &lambda)
+  std::vector<double> site_pressure(const ContactSurfaces     &surfaces,
+                                    const SurfaceWeights      &weights,
+                                    const Status              &status,
+                                    const std::vector<double> &lambda)
   {
-    return at_sites(weights, status.size(), lambda, [&](const unsigned int k) { return status.contact(k); });
+    auto pressure = at_sites(weights, status.size(), lambda, [&](const unsigned int k) { return status.contact(k); });
+    surfaces.site_exchange().update(pressure);
+    return pressure;
   }
 
   StatusInput status_input(const std::vector<ContactPairParameters> &pairs,
@@ -70,7 +74,7 @@ namespace Nodus
                            const ContactState                       &state)
   {
     StatusInput input;
-    input.pressure = site_pressure(weights, status, state.lambda);
+    input.pressure = site_pressure(surfaces, weights, status, state.lambda);
     if (status.has_friction())
       input.Lambda = site_friction(surfaces, pairing, weights, status, state);
     else

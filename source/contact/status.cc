@@ -1,8 +1,11 @@
 #include <nodus/contact/pairing.h>
 #include <nodus/contact/status.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace Nodus
 {
@@ -47,6 +50,7 @@ namespace Nodus
                         (option == Initial::closed ||
                          (option == Initial::by_gap && -distance[k] <= initial_gap * surfaces_.face_size(p)));
     }
+    surfaces_.site_exchange().update(now_.contact);
     committed_ = now_;
   }
 
@@ -71,14 +75,20 @@ namespace Nodus
     Change change;
     for (unsigned int k = 0; k < site_pressure.size(); ++k)
     {
+      if (!surfaces_.is_owned(k))
+        continue;
       const double mu = pairs_[surfaces_.pair(k)].friction_coefficient;
       largest         = std::max(largest, mu * std::abs(site_pressure[k]));
       const double d  = std::abs(mu * std::min(site_pressure[k], 0.) - now_.threshold[k]);
       if (d > change.value)
         change = {d, k};
     }
-    if (largest > 0.)
-      change.value /= largest;
+    const MPI_Comm communicator = surfaces_.layout().communicator;
+    largest                     = dealii::Utilities::MPI::max(largest, communicator);
+    const auto worst            = dealii::Utilities::MPI::min_max_avg(change.value, communicator);
+    if (worst.max_index != dealii::Utilities::MPI::this_mpi_process(communicator))
+      change.site = dealii::numbers::invalid_unsigned_int;
+    change.value = largest > 0. ? worst.max / largest : worst.max;
     return change;
   }
 
@@ -95,6 +105,7 @@ namespace Nodus
     threshold_floor_ = 0.;
     for (const double t : now_.threshold)
       threshold_floor_ = std::max(threshold_floor_, -relative_threshold_floor * t);
+    threshold_floor_ = dealii::Utilities::MPI::max(threshold_floor_, surfaces_.layout().communicator);
   }
 
   void Status::begin_increment()
@@ -119,83 +130,125 @@ namespace Nodus
       had_friction_[k] = friction(k);
   }
 
+  /// Statuses of the local sites as one vector.
+  std::vector<char> Status::code() const
+  {
+    std::vector<char> c(now_.contact.size());
+    for (unsigned int k = 0; k < c.size(); ++k)
+      c[k] = static_cast<char>(status(k));
+    return c;
+  }
+
+  Contradiction Status::contradiction(const StatusInput &input, const unsigned int site, const double tolerance) const
+  {
+    const double value = input.pressure[site] - normal_augmentation(site) * input.distance[site];
+    if (now_.contact[site] && value > tolerance)
+      return Contradiction::tension;
+    if (!now_.contact[site] && value < -tolerance)
+      return Contradiction::penetration;
+    if (!friction(site) || (merged_ && !had_friction_[site]))
+      return Contradiction::none;
+    const double rho  = tangential_augmentation(site, now_.threshold[site]);
+    const double norm = std::hypot(input.Lambda[site][0] + rho * input.slip[site][0],
+                                   input.Lambda[site][1] + rho * input.slip[site][1]);
+    if (now_.stick[site] && norm > 1. + noise)
+      return Contradiction::over_cone;
+    if (!now_.stick[site] && norm < 1. - noise)
+      return Contradiction::against_slip;
+    return Contradiction::none;
+  }
+
   Status::Update Status::update(const StatusInput &input, const bool closing_only)
   {
-    const auto code = [&]()
-    {
-      std::vector<char> c(now_.contact.size());
-      for (unsigned int k = 0; k < c.size(); ++k)
-        c[k] = static_cast<char>(status(k));
-      return c;
-    };
+    const MPI_Comm communicator = surfaces_.layout().communicator;
     if (visited_.empty())
       visited_.push_back(code());
 
     std::vector<double> largest(pairs_.size(), 0.);
     for (unsigned int k = 0; k < input.pressure.size(); ++k)
+      if (surfaces_.is_owned(k))
+      {
+        double &l = largest[surfaces_.pair(k)];
+        l         = std::max(l, std::abs(input.pressure[k]));
+      }
+    dealii::Utilities::MPI::max(largest, communicator, largest);
+
+    Update                     result;
+    std::vector<Contradiction> found;
+    for (unsigned int k = 0; k < input.pressure.size(); ++k)
+      if (surfaces_.is_owned(k))
+      {
+        const Contradiction c = contradiction(input, k, noise * largest[surfaces_.pair(k)]);
+        if (c == Contradiction::none || (closing_only && c != Contradiction::penetration))
+          continue;
+        result.sites.push_back(k);
+        found.push_back(c);
+      }
+    if (one_at_a_time_)
     {
-      double &l = largest[surfaces_.pair(k)];
-      l         = std::max(l, std::abs(input.pressure[k]));
+      DoFIndex least = std::numeric_limits<DoFIndex>::max();
+      for (const unsigned int k : result.sites)
+        least = std::min(least, surfaces_.order(k));
+      const DoFIndex first = dealii::Utilities::MPI::min(least, communicator);
+      const auto     at    = std::find_if(
+          result.sites.begin(), result.sites.end(), [&](const unsigned int k) { return surfaces_.order(k) == first; });
+      const Contradiction what = at == result.sites.end() ? Contradiction::none : found[at - result.sites.begin()];
+      const unsigned int  site = at == result.sites.end() ? 0 : *at;
+      result.sites.clear();
+      if (what != Contradiction::none)
+      {
+        result.sites = {site};
+        found        = {what};
+      }
     }
 
-    Update result;
-    for (unsigned int k = 0; k < input.pressure.size(); ++k)
+    for (unsigned int i = 0; i < result.sites.size(); ++i)
     {
-      const double  tolerance = noise * largest[surfaces_.pair(k)];
-      const double  value     = input.pressure[k] - normal_augmentation(k) * input.distance[k];
-      Contradiction found     = Contradiction::none;
-      if (now_.contact[k] && value > tolerance)
-        found = Contradiction::tension;
-      else if (!now_.contact[k] && value < -tolerance)
-        found = Contradiction::penetration;
-      else if (friction(k) && (!merged_ || had_friction_[k]))
-      {
-        const double rho = tangential_augmentation(k, now_.threshold[k]);
-        const double norm =
-            std::hypot(input.Lambda[k][0] + rho * input.slip[k][0], input.Lambda[k][1] + rho * input.slip[k][1]);
-        if (now_.stick[k] && norm > 1. + noise)
-          found = Contradiction::over_cone;
-        else if (!now_.stick[k] && norm < 1. - noise)
-          found = Contradiction::against_slip;
-      }
-      if (found == Contradiction::none || (closing_only && found != Contradiction::penetration))
-        continue;
-
-      now_.contact[k] = found != Contradiction::tension;
-      if (found == Contradiction::tension)
+      const unsigned int k = result.sites[i];
+      now_.contact[k]      = found[i] != Contradiction::tension;
+      if (found[i] == Contradiction::tension)
         opened_[k] = true;
       else // a site that closes sticks first; one that opened in this loop slips, stick may be what pulled it open
-        now_.stick[k] = found == Contradiction::against_slip || (found == Contradiction::penetration && !opened_[k]);
+        now_.stick[k] =
+            found[i] == Contradiction::against_slip || (found[i] == Contradiction::penetration && !opened_[k]);
       ++ledger_[k].changes;
-      ledger_[k].last = found;
-      result.sites.push_back(k);
-      if (one_at_a_time_)
-        break;
+      ledger_[k].last = found[i];
+    }
+    result.changes = dealii::Utilities::MPI::sum<unsigned int>(result.sites.size(), communicator);
+    if (result.changes > 0)
+    {
+      surfaces_.site_exchange().update(now_.contact);
+      surfaces_.site_exchange().update(now_.stick);
     }
     note_friction(); // of the next system
-    result.changes = result.sites.size();
-    if (result.changes == 0)
-      return result;
-
-    visited_.push_back(code());
-    for (unsigned int back = 1; back < visited_.size() && result.period == 0; ++back)
-      if (visited_[visited_.size() - 1 - back] == visited_.back())
-        result.period = back;
-    if (result.period > 0)
-    {
-      // every site that took part in the cycle
-      for (unsigned int back = 0; back < result.period; ++back)
-      {
-        const auto &a = visited_[visited_.size() - 1 - back], &b = visited_[visited_.size() - 2 - back];
-        for (unsigned int k = 0; k < a.size(); ++k)
-          if (a[k] != b[k])
-            ledger_[k].period = result.period;
-      }
-      result.cycles  = merged_ ? ++returns_ > tolerated_returns : one_at_a_time_;
-      one_at_a_time_ = !merged_;
-      visited_.assign(1, code());
-    }
+    if (result.changes > 0)
+      find_period(result);
     return result;
+  }
+
+  /// Whether and when the present statuses were met before in this loop.
+  void Status::find_period(Update &update)
+  {
+    visited_.push_back(code());
+    std::vector<unsigned int> differs;
+    for (unsigned int back = 1; back < visited_.size(); ++back)
+      differs.push_back(visited_[visited_.size() - 1 - back] != visited_.back());
+    dealii::Utilities::MPI::max(differs, surfaces_.layout().communicator, differs);
+    const auto met = std::find(differs.begin(), differs.end(), 0u);
+    if (met == differs.end())
+      return;
+    update.period = met - differs.begin() + 1;
+    // every site that took part in the cycle
+    for (unsigned int back = 0; back < update.period; ++back)
+    {
+      const auto &a = visited_[visited_.size() - 1 - back], &b = visited_[visited_.size() - 2 - back];
+      for (unsigned int k = 0; k < a.size(); ++k)
+        if (a[k] != b[k])
+          ledger_[k].period = update.period;
+    }
+    update.cycles  = merged_ ? ++returns_ > tolerated_returns : one_at_a_time_;
+    one_at_a_time_ = !merged_;
+    visited_.assign(1, code());
   }
 
   void Status::commit(const std::vector<std::array<double, 2>> &slip)

@@ -77,6 +77,7 @@ namespace Nodus
       points_.push_back(std::move(point));
     }
 
+    surfaces.slave_exchange().update(area_);
     for (unsigned int k = 0; k < area_.size(); ++k)
     {
       const auto &pair = pairs[slaves[k].pair];

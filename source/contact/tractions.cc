@@ -1,6 +1,9 @@
 #include <nodus/contact/tractions.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
+#include <map>
 
 namespace Nodus
 {
@@ -27,11 +30,16 @@ namespace Nodus
     }
 
     /// Slave nodes speak for themselves; those of the integration point scheme gather from the points of their faces.
+    /// Right at own nodes. Collective.
     std::vector<Around> gather(const ContactSurfaces &surfaces,
                                const SurfaceWeights  &weights,
                                const Status          &status,
                                const ContactResidual &residual)
     {
+      std::vector<StatusLedger> ledger;
+      for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+        ledger.push_back(status.ledger(s));
+      surfaces.site_exchange().update(ledger);
       std::vector<Around> nodes(surfaces.slave_nodes().size());
       const auto          count = [&](Around &node, const unsigned int site, const double area)
       {
@@ -47,7 +55,7 @@ namespace Nodus
             node.stick += area;
             break;
         }
-        add(node.ledger, status.ledger(site));
+        add(node.ledger, ledger[site]);
       };
       for (unsigned int k = 0; k < nodes.size(); ++k)
         if (surfaces.has_status(k))
@@ -64,6 +72,44 @@ namespace Nodus
           }
       return nodes;
     }
+    /// Results of a slave node as sent to the ranks that have it as a ghost.
+    struct NodeResult
+    {
+      double        pressure, gap, friction[dim], shear[2], slip[2];
+      ContactStatus status;
+      StatusLedger  ledger;
+    };
+
+    void sum_over_ranks(ContactResultants &result, const MPI_Comm communicator)
+    {
+      Vector3 *const vectors[] = {
+          &result.slave_force, &result.slave_moment, &result.master_force, &result.master_moment};
+      unsigned int *const counts[] = {&result.open,
+                                      &result.slip,
+                                      &result.stick,
+                                      &result.unpaired,
+                                      &result.status_changes,
+                                      &result.contradictions[0],
+                                      &result.contradictions[1],
+                                      &result.contradictions[2],
+                                      &result.contradictions[3]};
+      std::vector<double> sums;
+      for (const Vector3 *const v : vectors)
+        sums.insert(sums.end(), v->begin_raw(), v->end_raw());
+      for (const unsigned int *const n : counts)
+        sums.push_back(*n);
+      sums.push_back(result.contact_area);
+      dealii::Utilities::MPI::sum(sums, communicator, sums);
+      auto sum = sums.begin();
+      for (Vector3 *const v : vectors)
+        for (unsigned int c = 0; c < dim; ++c)
+          (*v)[c] = *sum++;
+      for (unsigned int *const n : counts)
+        *n = static_cast<unsigned int>(*sum++);
+      result.contact_area     = *sum;
+      result.maximum_pressure = dealii::Utilities::MPI::max(result.maximum_pressure, communicator);
+      result.longest_cycle    = dealii::Utilities::MPI::max(result.longest_cycle, communicator);
+    }
   } // namespace
 
   std::vector<ContactFields> contact_fields(const std::vector<ContactPairParameters> &pairs,
@@ -75,54 +121,108 @@ namespace Nodus
                                             const ContactState                       &state,
                                             const ContactResidual                    &residual)
   {
+    const std::vector<Around> around = gather(surfaces, weights, status, residual);
+    std::vector<NodeResult>   results(surfaces.slave_nodes().size());
+    for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
+    {
+      const SitePairing &frame    = pairing[k];
+      const Vector3      traction = -around[k].force / weights.area()[k];
+      const Vector3      friction = traction - (traction * frame.normal) * frame.normal;
+      NodeResult        &result   = results[k];
+      result.pressure             = -(traction * frame.normal);
+      result.gap                  = frame.found ? -assembler.distance(state, k) : 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        result.friction[c] = friction[c];
+      for (unsigned int i = 0; i < 2; ++i)
+      {
+        result.shear[i] = friction * frame.tangent[i];
+        result.slip[i]  = status.accumulated_slip(k)[i];
+      }
+      result.status = around[k].status();
+      result.ledger = around[k].ledger;
+    }
+    surfaces.slave_exchange().update(results);
+
     std::vector<ContactFields> all(pairs.size());
-    std::vector<unsigned int>  local_number(surfaces.slave_nodes().size());
+    std::vector<unsigned int>  local_number;
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
       all[p].name   = pairs[p].name;
       all[p].degree = surfaces.degree();
     }
-    const std::vector<Around> nodes = gather(surfaces, weights, status, residual);
-    for (unsigned int k = 0; k < surfaces.slave_nodes().size(); ++k)
+    for (unsigned int k = 0; k < results.size(); ++k)
     {
       const SlaveNode   &slave  = surfaces.slave_nodes()[k];
       const SitePairing &frame  = pairing[k];
+      const NodeResult  &result = results[k];
       ContactFields     &fields = all[slave.pair];
-      local_number[k]           = fields.X.size();
+      local_number.push_back(fields.X.size());
 
-      const Point  &X        = surfaces.nodes()[slave.node].X;
-      const Vector3 traction = -nodes[k].force / weights.area()[k];
-      const Vector3 friction = traction - (traction * frame.normal) * frame.normal;
+      const Point &X = surfaces.nodes()[slave.node].X;
       fields.X.push_back(X);
       fields.displacement.push_back(state.x[slave.node] - X);
-      fields.pressure.push_back(-(traction * frame.normal));
+      fields.pressure.push_back(result.pressure);
       fields.multiplier.push_back(state.lambda[k]);
-      fields.gap.push_back(frame.found ? -assembler.distance(state, k) : 0.);
-      fields.friction.push_back(friction);
+      fields.gap.push_back(result.gap);
+      fields.friction.push_back(Vector3(result.friction));
       for (unsigned int i = 0; i < 2; ++i)
       {
-        fields.shear[i].push_back(friction * frame.tangent[i]);
-        fields.slip[i].push_back(status.accumulated_slip(k)[i]);
+        fields.shear[i].push_back(result.shear[i]);
+        fields.slip[i].push_back(result.slip[i]);
       }
-      fields.status.push_back(nodes[k].status());
+      fields.status.push_back(result.status);
       fields.normal.push_back(frame.normal);
       fields.tangent1.push_back(frame.tangent[0]);
       fields.area.push_back(weights.area()[k]);
       fields.paired.push_back(frame.found);
-      fields.status_changes.push_back(nodes[k].ledger.changes);
-      fields.cycle_period.push_back(nodes[k].ledger.period);
-      fields.contradiction.push_back(static_cast<char>(nodes[k].ledger.last));
+      fields.status_changes.push_back(result.ledger.changes);
+      fields.cycle_period.push_back(result.ledger.period);
+      fields.contradiction.push_back(static_cast<char>(result.ledger.last));
+      fields.number.push_back(surfaces.multiplier(k));
     }
+    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(surfaces.layout().communicator);
     for (unsigned int p = 0; p < pairs.size(); ++p)
       for (const SurfaceFace &face : surfaces.slave_faces(p))
-      {
-        std::vector<unsigned int> nodes;
-        for (const unsigned int i : face.nodes)
-          nodes.push_back(local_number[surfaces.slave_number(i)]);
-        all[p].faces.push_back(std::move(nodes));
-        all[p].face_owner.push_back(face.owner);
-      }
+        if (face.owner == rank)
+        {
+          all[p].faces.emplace_back();
+          for (const unsigned int i : face.nodes)
+            all[p].faces.back().push_back(local_number[surfaces.slave_number(i)]);
+        }
     return all;
+  }
+
+  std::vector<ContactFields> whole_surface(const std::vector<ContactFields> &parts, const MPI_Comm communicator)
+  {
+    std::vector<ContactFields> whole;
+    for (const ContactFields &part : parts)
+    {
+      const auto all = dealii::Utilities::MPI::all_gather(communicator, part);
+      // nodes on several ranks are the same there: the first one counts
+      std::map<DoFIndex, std::pair<unsigned int, unsigned int>> nodes; // by number: rank and place
+      for (unsigned int r = 0; r < all.size(); ++r)
+        for (unsigned int i = 0; i < all[r].number.size(); ++i)
+          nodes.emplace(all[r].number[i], std::make_pair(r, i));
+
+      ContactFields                    surface;
+      std::map<DoFIndex, unsigned int> place;
+      surface.name   = part.name;
+      surface.degree = part.degree;
+      for (const auto &[number, source] : nodes)
+      {
+        place[number] = place.size();
+        surface.append(all[source.first], source.second);
+      }
+      for (const ContactFields &piece : all)
+        for (const auto &face : piece.faces)
+        {
+          surface.faces.emplace_back();
+          for (const unsigned int i : face)
+            surface.faces.back().push_back(place.at(piece.number[i]));
+        }
+      whole.push_back(std::move(surface));
+    }
+    return whole;
   }
 
   std::vector<ContactResultants> contact_resultants(const std::vector<ContactPairParameters> &pairs,
@@ -139,6 +239,8 @@ namespace Nodus
       all[p].name = pairs[p].name;
     for (unsigned int i = 0; i < surfaces.n_sites(); ++i)
     {
+      if (!surfaces.is_owned(i))
+        continue;
       ContactResultants &result = all[surfaces.pair(i)];
       for (auto e = jump.begin(i); e != jump.end(i); ++e)
       {
@@ -171,10 +273,10 @@ namespace Nodus
       }
     }
     for (const ContactPoint &point : weights.points())
-      if (point.site != dealii::numbers::invalid_unsigned_int && status.contact(point.site))
+      if (surfaces.is_owned(point.site) && status.contact(point.site))
         all[surfaces.pair(point.site)].contact_area += point.weight;
     const std::vector<Around> nodes = gather(surfaces, weights, status, residual);
-    for (unsigned int k = 0; k < nodes.size(); ++k)
+    for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
     {
       ContactResultants &result = all[surfaces.pair(k)];
       if (nodes[k].status() == ContactStatus::open)
@@ -184,6 +286,8 @@ namespace Nodus
       result.maximum_pressure =
           std::max(result.maximum_pressure, nodes[k].force * pairing[k].normal / weights.area()[k]);
     }
+    for (ContactResultants &result : all)
+      sum_over_ranks(result, surfaces.layout().communicator);
     return all;
   }
 } // namespace Nodus

@@ -343,6 +343,14 @@ namespace Nodus
     }
   }
 
+  void Bodies::balance(const std::function<unsigned int(const Triangulation::cell_iterator &)> &weight)
+  {
+    const auto connection = triangulation_.signals.weight.connect(
+        [&](const Triangulation::cell_iterator &cell, const Triangulation::CellStatus) { return weight(cell); });
+    triangulation_.repartition();
+    connection.disconnect();
+  }
+
   void Bodies::collect_extents()
   {
     // Every rank holds all coarse cells, hence all boundary ids, ...

@@ -295,21 +295,20 @@ namespace Nodus
   void VtuOutput::Implementation::add_contact(const std::vector<ContactFields> &contact, Output<dim - 1> &output) const
   {
     for (unsigned int p = 0; p < contact.size(); ++p)
-      for (unsigned int f = 0; f < contact[p].faces.size(); ++f)
-        if (contact[p].face_owner[f] == rank)
+      for (const auto &face : contact[p].faces)
+      {
+        const auto &c     = contact[p];
+        auto       &patch = output.add_patch(c.degree);
+        for (unsigned int j = 0; j < face.size(); ++j)
         {
-          const auto &c     = contact[p];
-          auto       &patch = output.add_patch(c.degree);
-          for (unsigned int j = 0; j < c.faces[f].size(); ++j)
-          {
-            const unsigned int k = c.faces[f][j];
-            Column(patch.data, j) << c.pressure[k] << c.gap[k] << c.shear[0][k] << c.shear[1][k] << c.slip[0][k]
-                                  << c.slip[1][k] << static_cast<unsigned int>(c.status[k]) << c.paired[k] << p + 1.
-                                  << c.normal[k] << c.tangent1[k] << c.friction[k] << c.displacement[k] << c.area[k]
-                                  << c.status_changes[k] << c.cycle_period[k] << int(c.contradiction[k])
-                                  << c.X[k] + c.displacement[k];
-          }
+          const unsigned int k = face[j];
+          Column(patch.data, j) << c.pressure[k] << c.gap[k] << c.shear[0][k] << c.shear[1][k] << c.slip[0][k]
+                                << c.slip[1][k] << static_cast<unsigned int>(c.status[k]) << c.paired[k] << p + 1.
+                                << c.normal[k] << c.tangent1[k] << c.friction[k] << c.displacement[k] << c.area[k]
+                                << c.status_changes[k] << c.cycle_period[k] << int(c.contradiction[k])
+                                << c.X[k] + c.displacement[k];
         }
+      }
   }
 
   /// One piece per rank (deal.II 9.4 distorts second-order cells when pieces share a file), then the record of the

@@ -164,7 +164,6 @@ namespace
     c.name   = "top";
     c.degree = degree;
     c.faces.resize(1);
-    c.face_owner = {0};
     for (unsigned int j = 0; j <= degree; ++j)
       for (unsigned int i = 0; i <= degree; ++i)
       {
@@ -238,9 +237,13 @@ namespace
       std::filesystem::remove_all(folder);
     MPI_Barrier(communicator);
 
+    // the face belongs to rank 0
+    ContactFields top = contact_on_top(degree);
+    if (!root)
+      top.faces.clear();
     VtuOutput output(folder, bodies, dof_handler, mapping, materials);
-    output.write(1, 0.5, u, {contact_on_top(degree)});
-    output.write(2, 1.0, u, {contact_on_top(degree), contact_on_top(degree)});
+    output.write(1, 0.5, u, {top});
+    output.write(2, 1.0, u, {top, top});
 
     if (!root)
       return;

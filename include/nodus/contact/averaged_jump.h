@@ -31,7 +31,8 @@ namespace Nodus
       Vector3            normal; ///< averaged, unit, from slave to master
     };
 
-    /// Measures as the pairs ask: @p x current, @p X reference positions. Each rank integrates its faces. Collective.
+    /// Measures as the pairs ask: @p x current, @p X reference positions. Each rank integrates its faces; the rows are
+    /// those of its slave nodes, ghosts know their area alone. Collective.
     void compute(const std::vector<ContactPairParameters> &pairs,
                  const ContactSurfaces                    &surfaces,
                  const ContactGeometry                    &geometry,
@@ -62,7 +63,7 @@ namespace Nodus
 
   private:
     std::vector<Face> faces_;
-    std::vector<Row>  rows_; ///< per slave node; area 0 where not covered or of another scheme
+    std::vector<Row> rows_; ///< per slave node; area 0 where not covered or of another scheme; of ghosts the area alone
   };
 } // namespace Nodus
 

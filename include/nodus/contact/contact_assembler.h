@@ -13,7 +13,7 @@
 
 namespace Nodus
 {
-  /// Nodal values that the contact terms depend on; the same on every rank.
+  /// Nodal values that the contact terms depend on, of the local surface nodes and slave nodes.
   struct ContactState
   {
     std::vector<Point>   x;          ///< current positions of the surface nodes
@@ -23,7 +23,7 @@ namespace Nodus
     std::vector<std::array<double, 2>> Lambda; ///< per slave node, in its tangent frame
   };
 
-  /// Contact and friction terms of the residual (eq. 10-15).
+  /// Contact and friction terms of the residual (eq. 10-15), owned sites and ghosts.
   struct ContactResidual
   {
     std::vector<Vector3> jump;   ///< per site, work conjugate to its jump: minus the force on the slave [force]
@@ -59,9 +59,10 @@ namespace Nodus
     void add_forces(const ContactResidual &residual, Vector &force) const;
 
     /// Largest relative violation of the contact and friction laws: lengths over @p length, friction law absolute.
+    /// Collective.
     double norm(const ContactResidual &residual, double length) const;
 
-    /// d_n and the tangential jump of the increment at a site; zero where unpaired.
+    /// d_n and the tangential jump of the increment at an owned site; zero where unpaired.
     double                distance(const ContactState &state, unsigned int site) const;
     std::array<double, 2> slip(const ContactState &state, unsigned int site) const;
 

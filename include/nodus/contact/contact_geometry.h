@@ -45,7 +45,7 @@ namespace Nodus
     std::vector<double>              size_;
   };
 
-  /// Both sides of every pair at the same positions, which must outlive it.
+  /// Both sides of every pair at the same positions, which must outlive it. Construction is collective.
   struct ContactGeometry
   {
     ContactGeometry(const std::vector<ContactPairParameters> &pairs,

@@ -19,7 +19,8 @@ namespace Nodus
   public:
     using Entry = AveragedJump::Entry;
 
-    /// Sites without partner have no entry.
+    /// Sites without partner have no entry, nor have ghosts of the averaged scheme and those whose partner is not here:
+    /// no point of this rank's faces needs them.
     void build(const std::vector<ContactPairParameters> &pairs,
                const ContactSurfaces                    &surfaces,
                const ContactGeometry                    &geometry,

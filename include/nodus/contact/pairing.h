@@ -21,12 +21,13 @@ namespace Nodus
     std::array<bool, 2>    tangent_free{{false, false}}; ///< void directions carry no friction multiplier
   };
 
-  /// Projections and frames of all contact sites; the same on every rank.
+  /// Projections of this rank's contact sites, and frames of these and of the ghosts.
   class Pairing
   {
   public:
     /// Projects all sites; frames are restricted to the relative motion that the constraints leave free. Nodes of the
-    /// averaged scheme have a partner where @p averaged covers them. Each rank projects the sites it owns. Collective.
+    /// averaged scheme have a partner where @p averaged covers them. Each rank projects the sites it owns and
+    /// passes their frames on; a ghost has its master point where the face is here. Collective.
     void project(const std::vector<ContactPairParameters> &pairs,
                  const ContactSurfaces                    &surfaces,
                  const ContactGeometry                    &geometry,
@@ -42,6 +43,8 @@ namespace Nodus
     }
 
   private:
+    void share(const ContactSurfaces &surfaces);
+
     std::vector<SitePairing> sites_;
   };
 } // namespace Nodus

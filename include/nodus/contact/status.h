@@ -40,8 +40,8 @@ namespace Nodus
     Contradiction last    = Contradiction::none;
   };
 
-  /// Contact status S, friction status S_f and frozen threshold mu lambda_s of every contact site: slave nodes, or the
-  /// integration points of pairs with that scheme (their slave nodes stay open).
+  /// Contact status S, friction status S_f and frozen threshold mu lambda_s of the local contact sites: slave nodes, or
+  /// the integration points of pairs with that scheme (their slave nodes stay open). Owners decide, ghosts follow.
   class Status
   {
   public:
@@ -49,7 +49,7 @@ namespace Nodus
            const ContactSurfaces                    &surfaces,
            const std::vector<double>                &normal_augmentation);
 
-    /// Number of contact sites.
+    /// Number of local contact sites.
     unsigned int size() const
     {
       return now_.contact.size();
@@ -96,18 +96,19 @@ namespace Nodus
              std::max(-threshold, threshold_floor_);
     }
 
-    /// First pairing of the run: by gap, closed or open.
+    /// First pairing of the run: by gap, closed or open. Collective.
     void initialize(const Pairing &pairing, const std::vector<double> &distance);
-    /// Imposes the state of one site: S, S_f and mu lambda_s.
+    /// Imposes the state of one site: S, S_f and mu lambda_s; call it on every rank that has the site. Collective.
     void assign(unsigned int site, bool contact, bool stick, double threshold);
     /// Sites that lost their partner open.
     void inherit(const Pairing &pairing);
 
     /// Freezes mu lambda_s from the weighted pressure; returns max|lambda - lambda_s| / max|lambda| and its site.
+    /// Collective.
     struct Change
     {
       double       value = 0.;
-      unsigned int site  = dealii::numbers::invalid_unsigned_int;
+      unsigned int site  = dealii::numbers::invalid_unsigned_int; ///< on the rank that owns it, invalid on others
     };
     Change threshold_change(const std::vector<double> &site_pressure) const;
     void   freeze_threshold(const std::vector<double> &site_pressure);
@@ -121,15 +122,15 @@ namespace Nodus
     void begin_loop(bool merged = false);
     struct Update
     {
-      unsigned int              changes = 0;
+      unsigned int              changes = 0;     ///< on all ranks
       unsigned int              period  = 0;     ///< > 0: this status vector was visited that many passes ago
       bool                      cycles  = false; ///< visited again although sites change one at a time, or too often
-      std::vector<unsigned int> sites;           ///< that changed
+      std::vector<unsigned int> sites;           ///< of this rank that changed
     };
     /// Tests every site and changes those that contradict their status (eq. 2, 3, 7, 8); begin_loop() comes first. Once
-    /// a status vector comes back, only the contradicting site of lowest number changes in a pass: Murty's least-index
-    /// rule, which is finite for frictionless contact at frozen geometry where changing all at once may cycle. A merged
-    /// loop has no such rule and cycles when vectors come back time and again.
+    /// a status vector comes back, only the contradicting site of lowest order (ContactSurfaces) changes in a pass:
+    /// Murty's least-index rule, which is finite for frictionless contact at frozen geometry where changing all at once
+    /// may cycle. A merged loop has no such rule and cycles when vectors come back time and again. Collective.
     /// @p closing_only: sites that penetrate close, nothing else changes (an iterate whose pressures mean nothing yet).
     Update update(const StatusInput &input, bool closing_only = false);
 
@@ -144,7 +145,8 @@ namespace Nodus
       return now_.slip[site];
     }
 
-    /// The increment converged: adds its slip and keeps the state; or goes back to the last kept one.
+    /// The increment converged: adds its slip (right at owned sites) and keeps the state; or goes back to the last kept
+    /// one. Collective.
     void commit(const std::vector<std::array<double, 2>> &slip);
     void roll_back();
 
@@ -155,8 +157,11 @@ namespace Nodus
       std::vector<double>                threshold;
       std::vector<std::array<double, 2>> slip;
     };
-    void update_floor();
-    void note_friction();
+    void              update_floor();
+    void              note_friction();
+    std::vector<char> code() const;
+    Contradiction     contradiction(const StatusInput &input, unsigned int site, double tolerance) const;
+    void              find_period(Update &update);
 
     const std::vector<ContactPairParameters> &pairs_;
     const ContactSurfaces                    &surfaces_;

@@ -1,6 +1,9 @@
 #ifndef nodus_contact_surface_h
 #define nodus_contact_surface_h
 
+#include <nodus/contact/face_directory.h>
+#include <nodus/contact/ghost_exchange.h>
+#include <nodus/contact/surface_face.h>
 #include <nodus/mesh/bodies.h>
 #include <nodus/parameters.h>
 #include <nodus/solve/linear_system.h>
@@ -12,6 +15,7 @@
 
 #include <array>
 #include <set>
+#include <unordered_map>
 #include <vector>
 
 namespace Nodus
@@ -22,14 +26,6 @@ namespace Nodus
     std::array<DoFIndex, dim> dofs;
     Point                     X;     ///< reference position
     unsigned int              owner; ///< rank that owns its degrees of freedom
-  };
-
-  /// A face with (degree+1)^2 nodes, lexicographic in its local coordinates (xi, eta) in [0, 1]^2.
-  struct SurfaceFace
-  {
-    std::vector<unsigned int> nodes;       ///< indices into ContactSurfaces::nodes()
-    double                    orientation; ///< +1 when x_xi x x_eta points out of the body, -1 otherwise
-    unsigned int              owner;       ///< rank of the cell
   };
 
   /// A node that carries multipliers.
@@ -46,21 +42,26 @@ namespace Nodus
     double       xi, eta, weight; ///< of the rule on [0, 1]^2
   };
 
-  /// Values and derivatives of the face shape functions at one point.
-  struct FaceShape
-  {
-    unsigned int          n; ///< (degree+1)^2
-    std::array<double, 9> value, d_xi, d_eta;
-    FaceShape(unsigned int degree, double xi, double eta);
-  };
+  /// Divides the cells among the ranks so that those with slave faces, where contact is searched and assembled, do not
+  /// all come on top of an equal share. Collective.
+  void
+  balance_contact(const std::vector<ContactPairParameters> &pairs, const dealii::Mapping<dim> &mapping, Bodies &bodies);
 
-  /// Slave and master surfaces of all pairs, and their current positions; the same on every rank.
+  /// This rank's part of the slave and master surfaces of all pairs, in local numbers.
   ///
-  /// Only surfaces are gathered, never volumes; this class is the one place to change for a distributed search.
+  /// - slave faces: of own cells, and all at the nodes of those and at own nodes. Normals and areas are complete at the
+  ///   nodes of own faces and at own nodes; values that need more at the nodes beyond come from their owners, by the
+  ///   exchanges;
+  /// - master faces: of own cells, those that can be partners of this rank's sites, and one layer around for the
+  ///   normals. They are fetched anew when the surfaces have moved.
+  ///
+  /// Faces are in ascending order of their numbers, which do not depend on the number of ranks: so ties are broken and
+  /// sums are ordered alike on all of them.
   class ContactSurfaces
   {
   public:
-    /// @throws InputError: a side without faces, a node that is slave twice, a face on both sides of a pair.
+    /// Collective. @p pairs must outlive it. @throws InputError on all ranks: a side without faces, a node that is
+    /// slave twice, a face on both sides of a pair.
     ContactSurfaces(const std::vector<ContactPairParameters> &pairs,
                     const Bodies                             &bodies,
                     const dealii::DoFHandler<dim>            &dof_handler,
@@ -74,10 +75,12 @@ namespace Nodus
     {
       return slave_faces_.size();
     }
+    /// The first are the slave nodes, in the order of slave_nodes().
     const std::vector<SurfaceNode> &nodes() const
     {
       return nodes_;
     }
+    /// Those of this rank come first, in the order of their multipliers.
     const std::vector<SlaveNode> &slave_nodes() const
     {
       return slave_nodes_;
@@ -123,11 +126,36 @@ namespace Nodus
     /// Reference position of a site.
     Point site_position(unsigned int site) const;
 
-    /// Range [first, last) of slave nodes owned by this rank.
-    std::pair<unsigned int, unsigned int> owned_slave_nodes() const
+    unsigned int n_owned_slave_nodes() const
     {
-      return owned_range_;
+      return n_owned_slave_nodes_;
     }
+    /// This rank owns the site (site_owner); false for invalid numbers, too.
+    bool is_owned(const unsigned int site) const
+    {
+      return site < n_owned_slave_nodes_ || (is_point(site) && site < n_sites() && site_owner(site) == rank_);
+    }
+    /// Number of the slave node's multiplier among those of all ranks (BlockLayout).
+    DoFIndex multiplier(const unsigned int slave) const
+    {
+      return multiplier_[slave];
+    }
+    /// Number of an owned site on the whole surface that does not depend on the ranks.
+    DoFIndex order(const unsigned int site) const
+    {
+      return order_[site];
+    }
+
+    /// Arrays over slave_nodes() and over the sites.
+    const GhostExchange &slave_exchange() const
+    {
+      return slave_exchange_;
+    }
+    const GhostExchange &site_exchange() const
+    {
+      return site_exchange_;
+    }
+
     const std::vector<SurfaceFace> &slave_faces(const unsigned int pair) const
     {
       return slave_faces_[pair];
@@ -136,10 +164,20 @@ namespace Nodus
     {
       return master_faces_[pair];
     }
-    /// Slave number of a surface node (its multiplier index), or invalid_unsigned_int.
+    /// Number of faces on all ranks.
+    unsigned int n_faces(const unsigned int pair, const SurfaceSide side) const
+    {
+      return directory_.size(pair, side);
+    }
+    /// Index into slave_nodes() of a surface node, or invalid_unsigned_int.
     unsigned int slave_number(const unsigned int node) const
     {
-      return slave_number_[node];
+      return node < slave_nodes_.size() ? node : dealii::numbers::invalid_unsigned_int;
+    }
+    /// Index into nodes() by the first degree of freedom; the node must be there.
+    unsigned int node(const DoFIndex first_dof) const
+    {
+      return node_of_dof_.at(first_dof);
     }
     /// Mean size (square root of the area) of the slave faces of a pair, reference configuration.
     double face_size(const unsigned int pair) const
@@ -156,7 +194,11 @@ namespace Nodus
       return layout_;
     }
 
-    /// Values of a displacement-like vector (fully distributed) at all surface nodes. Collective.
+    /// Fetches the master faces near this rank's slave faces at displacement @p u, unless no surface node has moved
+    /// much since the last time; returns whether nodes() and master_faces() have changed. Collective.
+    bool fetch_masters(const Vector &u);
+
+    /// Values of a displacement-like vector (fully distributed) at all local nodes. Collective.
     void gather(const Vector &v, std::vector<Vector3> &nodal_values) const;
 
     /// Which components of which nodes are prescribed; once after the constraints are known. Collective.
@@ -174,31 +216,39 @@ namespace Nodus
     std::vector<Point> positions(const std::vector<Vector3> &u) const;
 
   private:
-    unsigned int                          degree_;
-    std::vector<SurfaceNode>              nodes_;
-    std::vector<SlaveNode>                slave_nodes_;
-    std::vector<SlavePoint>               slave_points_;
-    std::vector<char>                     has_points_;
-    std::vector<unsigned int>             slave_number_;
-    std::pair<unsigned int, unsigned int> owned_range_;
-    std::vector<std::vector<SurfaceFace>> slave_faces_, master_faces_;
-    std::vector<double>                   face_size_;
-    std::vector<std::set<unsigned int>>   bodies_;
-    std::vector<std::array<bool, dim>>    fixed_;
-    BlockLayout                           layout_;
-    dealii::IndexSet                      surface_dofs_;
-  };
+    std::string overlap() const;
+    std::string repeated_face() const;
+    void        measure_faces(unsigned int n_bodies);
+    void        take_slave_faces();
+    void        make_points();
+    void        number_sites();
+    void        make_layout(const dealii::IndexSet &owned_dofs);
+    void        fetch(const std::vector<Vector3> &u);
+    void        take_master_faces(const std::vector<FaceRecord> &records);
+    void        add_node(const FaceRecord &record, unsigned int n);
+    SurfaceFace make_face(const FaceRecord &record) const;
+    void        gather_fixed();
 
-  /// Position and tangents of a face at a shape point.
-  struct FaceGeometry
-  {
-    Point   x;
-    Vector3 d_xi, d_eta;
-    FaceGeometry(const SurfaceFace &face, const FaceShape &shape, const std::vector<Point> &positions);
-    /// @p points: as many positions as the shape has functions.
-    FaceGeometry(const FaceShape &shape, const Point *points);
-    /// x_xi x x_eta, length = surface element.
-    Vector3 area_vector() const;
+    const std::vector<ContactPairParameters>  &pairs_;
+    MPI_Comm                                   communicator_;
+    unsigned int                               degree_, rank_;
+    FaceDirectory                              directory_;
+    std::vector<SurfaceNode>                   nodes_;
+    std::unordered_map<DoFIndex, unsigned int> node_of_dof_;
+    std::vector<SlaveNode>                     slave_nodes_;
+    std::vector<SlavePoint>                    slave_points_;
+    std::vector<char>                          has_points_;
+    unsigned int                               n_owned_slave_nodes_ = 0;
+    std::vector<DoFIndex>                      multiplier_; ///< of each slave node
+    std::vector<DoFIndex>                      order_;      ///< of each site, complete for owned ones
+    GhostExchange                              slave_exchange_, site_exchange_;
+    std::vector<std::vector<SurfaceFace>>      slave_faces_, master_faces_;
+    std::vector<double>                        face_size_;
+    std::vector<std::set<unsigned int>>        bodies_;
+    Vector                                     fixed_mask_, fetched_at_; ///< fetched_at_: displacement
+    std::vector<std::array<bool, dim>>         fixed_;
+    BlockLayout                                layout_;
+    mutable Vector                             ghosted_; ///< for gather()
   };
 } // namespace Nodus
 

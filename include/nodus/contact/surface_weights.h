@@ -29,7 +29,7 @@ namespace Nodus
   class SurfaceWeights
   {
   public:
-    /// @p x current and @p X reference positions of the surface nodes; each pair takes its own measure.
+    /// @p x current and @p X reference positions of the surface nodes; each pair takes its own measure. Collective.
     void compute(const std::vector<ContactPairParameters> &pairs,
                  const ContactSurfaces                    &surfaces,
                  const AveragedJump                       &averaged,
@@ -46,7 +46,8 @@ namespace Nodus
       return area_;
     }
 
-    /// (M f)_j / m_j for a nodal field: the weighted nodal value that statuses are tested with.
+    /// (M f)_j / m_j for a nodal field: the weighted nodal value that statuses are tested with; right where all faces
+    /// of the node are here, as for own nodes.
     std::vector<double> weighted(const std::vector<double> &nodal_field) const;
 
   private:

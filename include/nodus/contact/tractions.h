@@ -10,7 +10,7 @@
 namespace Nodus
 {
   /// Nodal contact fields of every pair, recovered from the nodal contact forces: traction = force / m_j, which is the
-  /// weighted pressure lambda_bar in the normal direction. The same on every rank.
+  /// weighted pressure lambda_bar in the normal direction. Faces of this rank and the nodes around. Collective.
   std::vector<ContactFields> contact_fields(const std::vector<ContactPairParameters> &pairs,
                                             const ContactSurfaces                    &surfaces,
                                             const Pairing                            &pairing,
@@ -20,8 +20,11 @@ namespace Nodus
                                             const ContactState                       &state,
                                             const ContactResidual                    &residual);
 
+  /// The whole slave surfaces from the parts of all ranks, the same on every rank. Collective.
+  std::vector<ContactFields> whole_surface(const std::vector<ContactFields> &parts, MPI_Comm communicator);
+
   /// Resultants on both sides, area in contact, largest pressure and status counts of every pair. The same on every
-  /// rank.
+  /// rank. Collective.
   std::vector<ContactResultants> contact_resultants(const std::vector<ContactPairParameters> &pairs,
                                                     const ContactSurfaces                    &surfaces,
                                                     const Pairing                            &pairing,

@@ -8,6 +8,7 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/distributed/tria.h>
 
+#include <functional>
 #include <memory>
 #include <set>
 #include <string>
@@ -33,6 +34,10 @@ namespace Nodus
     {
       return triangulation_;
     }
+    /// Divides the cells anew among the ranks, with equal sums of their weights; before anything is built on them.
+    /// Collective.
+    void balance(const std::function<unsigned int(const Triangulation::cell_iterator &)> &weight);
+
     /// The reference geometry, of @p degree per cell: that of second-order files where a body comes from one, also
     /// after refinement, that of the generators' manifolds elsewhere. May outlive the bodies.
     std::unique_ptr<dealii::Mapping<dim>> make_mapping(unsigned int degree) const;

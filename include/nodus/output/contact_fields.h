@@ -7,7 +7,7 @@
 
 namespace Nodus
 {
-  /// What users see of one contact pair, converged state; nodal arrays are the same on every rank.
+  /// What users see of one contact pair, converged state: of the whole slave surface or of this rank's part.
   struct ContactFields
   {
     std::string name; ///< of the pair
@@ -30,11 +30,21 @@ namespace Nodus
     std::vector<unsigned int> cycle_period; ///< of the longest status cycle the node took part in; 0: none
     std::vector<char> contradiction;        ///< last one: 0 none, 1 tension, 2 penetration, 3 over cone, 4 against slip
 
-    /// Slave faces: (degree+1)^2 indices into the arrays above, lexicographic (first local coordinate fastest);
-    /// replicated, face f is written by rank face_owner[f].
+    std::vector<DoFIndex> number; ///< of the slave node on the whole slave surface
+
+    /// Slave faces: (degree+1)^2 indices into the arrays above, lexicographic (first local coordinate fastest).
     unsigned int                           degree;
     std::vector<std::vector<unsigned int>> faces;
-    std::vector<unsigned int>              face_owner;
+
+    /// Adds node @p i of @p other.
+    void append(const ContactFields &other, unsigned int i);
+
+    template <typename Archive>
+    void serialize(Archive &archive, const unsigned int)
+    {
+      archive &name &X &displacement &pressure &multiplier &gap &friction &shear[0] & shear[1] & slip[0] & slip[1] &
+          status &normal &tangent1 &area &paired &status_changes &cycle_period &contradiction &number &degree &faces;
+    }
   };
 
   /// Resultants and counts of one pair, for contact.csv; moments about the origin, current configuration.

@@ -1,0 +1,148 @@
+#include <nodus/contact/face_directory.h>
+#include <nodus/mesh/region.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/fe/fe.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace Nodus
+{
+  FaceDirectory::FaceDirectory(const dealii::DoFHandler<dim> &dof_handler, const unsigned int n_pairs)
+      : dof_handler_(dof_handler)
+      , rank_(dealii::Utilities::MPI::this_mpi_process(dof_handler.get_communicator()))
+      , n_face_nodes_((dof_handler.get_fe().degree + 1) * (dof_handler.get_fe().degree + 1))
+      , own_(2 * n_pairs)
+      , size_(2 * n_pairs, 0)
+  {
+    const DoFIndex n_owned = dof_handler.locally_owned_dofs().n_elements();
+    for (const DoFIndex n : dealii::Utilities::MPI::all_gather(dof_handler.get_communicator(), n_owned))
+      end_of_rank_.push_back(n + (end_of_rank_.empty() ? 0 : end_of_rank_.back()));
+  }
+
+  void FaceDirectory::collect(const Region               &region,
+                              const dealii::Mapping<dim> &mapping,
+                              const unsigned int          pair,
+                              const unsigned int          side)
+  {
+    const auto        &fe             = dof_handler_.get_fe();
+    const auto        &base           = fe.base_element(0);
+    const auto        &support_points = base.get_unit_support_points();
+    const unsigned int n_1d           = fe.degree + 1;
+
+    std::vector<DoFIndex> cell_dofs(fe.n_dofs_per_cell());
+    for (const auto &cell : dof_handler_.active_cell_iterators())
+      if (cell->is_locally_owned() && cell->at_boundary())
+        for (const unsigned int f : cell->face_indices())
+          if (region.selects_face(mapping, cell, f))
+          {
+            cell->get_dof_indices(cell_dofs);
+            const unsigned int normal = f / 2, a = normal == 0 ? 1 : 0, b = normal == 2 ? 1 : 2;
+            FaceRecord         record{};
+            // e_a x e_b = -e_normal for normal = y
+            record.orientation = (normal == 1 ? -1. : 1.) * (f % 2 == 1 ? 1. : -1.);
+            record.pair        = pair;
+            record.side        = side;
+            record.rank        = rank_;
+            record.body        = cell->material_id();
+            for (unsigned int i = 0; i < base.n_dofs_per_cell(); ++i)
+              if (std::abs(support_points[i][normal] - f % 2) < 1e-12)
+              {
+                const auto position = [&](const unsigned int axis)
+                { return static_cast<unsigned int>(std::lround(support_points[i][axis] * fe.degree)); };
+                const unsigned int n = position(a) + n_1d * position(b);
+                const Point        X = mapping.transform_unit_to_real_cell(cell, support_points[i]);
+                for (unsigned int c = 0; c < dim; ++c)
+                {
+                  record.dofs[n][c] = cell_dofs[fe.component_to_system_index(c, i)];
+                  record.X[n][c]    = X[c];
+                }
+              }
+            own_[2 * pair + side].push_back(record);
+          }
+  }
+
+  void FaceDirectory::publish()
+  {
+    // The ranks' cells follow each other on the space-filling curve: so do their faces.
+    const MPI_Comm            communicator = dof_handler_.get_communicator();
+    std::vector<unsigned int> counts;
+    for (const auto &faces : own_)
+      counts.push_back(faces.size());
+    const auto all = dealii::Utilities::MPI::all_gather(communicator, counts);
+    for (unsigned int i = 0; i < own_.size(); ++i)
+    {
+      unsigned int first = 0;
+      for (unsigned int r = 0; r < all.size(); ++r)
+      {
+        if (r < rank_)
+          first += all[r][i];
+        size_[i] += all[r][i];
+      }
+      for (FaceRecord &face : own_[i])
+        face.number = first++;
+    }
+
+    std::map<unsigned int, std::vector<FaceRecord>> outgoing;
+    for (const auto &faces : own_)
+      for (const FaceRecord &face : faces)
+      {
+        std::set<unsigned int> ranks;
+        for (unsigned int n = 0; n < n_face_nodes_; ++n)
+          ranks.insert(owner(face.dofs[n][0]));
+        for (const unsigned int r : ranks)
+          outgoing[r].push_back(face);
+      }
+    for (const auto &[other, faces] : dealii::Utilities::MPI::some_to_some(communicator, outgoing))
+      at_own_nodes_.insert(at_own_nodes_.end(), faces.begin(), faces.end());
+    for (unsigned int f = 0; f < at_own_nodes_.size(); ++f)
+    {
+      const FaceRecord &face = at_own_nodes_[f];
+      for (unsigned int n = 0; n < n_face_nodes_; ++n)
+        if (owner(face.dofs[n][0]) == rank_)
+          incident_[{2 * face.pair + face.side, face.dofs[n][0]}].push_back(f);
+    }
+  }
+
+  void FaceDirectory::add_layer(std::vector<FaceRecord> &faces) const
+  {
+    const MPI_Comm                                  communicator = dof_handler_.get_communicator();
+    std::map<unsigned int, std::set<NodeKey>>       nodes;
+    std::map<unsigned int, std::vector<NodeKey>>    questions;
+    std::map<unsigned int, std::vector<FaceRecord>> answers;
+    for (const FaceRecord &face : faces)
+      for (unsigned int n = 0; n < n_face_nodes_; ++n)
+        nodes[owner(face.dofs[n][0])].insert({2 * face.pair + face.side, face.dofs[n][0]});
+    for (const auto &[other, keys] : nodes)
+      questions[other].assign(keys.begin(), keys.end());
+    for (const auto &[other, keys] : dealii::Utilities::MPI::some_to_some(communicator, questions))
+    {
+      std::set<unsigned int> indices;
+      for (const NodeKey &key : keys)
+        if (const auto at = incident_.find(key); at != incident_.end())
+          indices.insert(at->second.begin(), at->second.end());
+      for (const unsigned int i : indices)
+        if (at_own_nodes_[i].rank != other) // who has its own faces already
+          answers[other].push_back(at_own_nodes_[i]);
+    }
+    for (const auto &[other, found] : dealii::Utilities::MPI::some_to_some(communicator, answers))
+      faces.insert(faces.end(), found.begin(), found.end());
+    make_unique(faces);
+  }
+
+  unsigned int FaceDirectory::owner(const DoFIndex dof) const
+  {
+    return std::upper_bound(end_of_rank_.begin(), end_of_rank_.end(), dof) - end_of_rank_.begin();
+  }
+
+  void make_unique(std::vector<FaceRecord> &faces)
+  {
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(),
+                            faces.end(),
+                            [](const FaceRecord &a, const FaceRecord &b) { return !(a < b) && !(b < a); }),
+                faces.end());
+  }
+} // namespace Nodus
