@@ -1,5 +1,6 @@
 #include <nodus/solve/aggregation.h>
 #include <nodus/solve/coarse_matrix.h>
+#include <nodus/solve/mode_panel.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -7,104 +8,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 namespace Nodus
 {
-  namespace
-  {
-    constexpr unsigned int none    = dealii::numbers::invalid_unsigned_int;
-    constexpr unsigned int n_modes = Aggregation::n_modes;
-
-    // The six modes fill six lanes of a vector of eight; the others hold what comes next in memory, or zero.
-    typedef double Lanes __attribute__((vector_size(64)));
-    typedef float  Stored __attribute__((vector_size(32)));
-
-    /// Three displacements by the six modes.
-    struct Panel
-    {
-      Lanes row[dim];
-    };
-
-    Panel load(const float *block)
-    {
-      Panel panel;
-      for (unsigned int c = 0; c < dim; ++c)
-      {
-        Stored stored;
-        std::memcpy(&stored, block + n_modes * c, sizeof(Stored));
-        panel.row[c] = __builtin_convertvector(stored, Lanes);
-      }
-      return panel;
-    }
-
-    /// c += a p
-    void add_product(const double *a, const bool transposed, const Panel &p, Panel &c)
-    {
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int k = 0; k < dim; ++k)
-          c.row[i] += (transposed ? a[dim * k + i] : a[dim * i + k]) * p.row[k];
-    }
-
-    /// sum += block^T p, where the unused lanes of p are zero.
-    void add_transposed_product(const float *block, const Panel &p, CoarseRow::Block &sum)
-    {
-      Lanes row[n_modes];
-      for (unsigned int m = 0; m < n_modes; ++m)
-        std::memcpy(&row[m], sum.data() + n_modes * m, sizeof(Lanes));
-      for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int m = 0; m < n_modes; ++m)
-          row[m] += static_cast<double>(block[n_modes * c + m]) * p.row[c];
-      for (unsigned int m = 0; m < n_modes; ++m) // in this order: each store repairs what the one before spilt over
-        std::memcpy(sum.data() + n_modes * m, &row[m], sizeof(Lanes));
-    }
-
-    /// Sum of panels by column, for one row at a time.
-    class SparseRow
-    {
-    public:
-      void reinit(const unsigned int n_columns)
-      {
-        slot_.assign(n_columns, none);
-        columns_.clear();
-      }
-      Panel &operator[](const unsigned int column)
-      {
-        if (slot_[column] == none)
-        {
-          slot_[column] = columns_.size();
-          columns_.push_back(column);
-          if (panels_.size() < columns_.size())
-            panels_.emplace_back();
-          panels_[slot_[column]] = Panel{};
-        }
-        return panels_[slot_[column]];
-      }
-      const std::vector<unsigned int> &columns() const
-      {
-        return columns_;
-      }
-      /// Of the k-th column, with unused lanes of zero.
-      const Panel &panel(const unsigned int k)
-      {
-        for (Lanes &row : panels_[k].row)
-          for (unsigned int lane = n_modes; lane < 8; ++lane)
-            row[lane] = 0.;
-        return panels_[k];
-      }
-      void clear()
-      {
-        for (const unsigned int column : columns_)
-          slot_[column] = none;
-        columns_.clear();
-      }
-
-    private:
-      std::vector<unsigned int> slot_, columns_;
-      std::vector<Panel>        panels_;
-    };
-  } // namespace
+  using ModePanel::add_product;
+  using ModePanel::add_transposed_product;
+  using ModePanel::load;
+  using ModePanel::none;
+  using ModePanel::Panel;
+  using ModePanel::SparseRow;
 
   Aggregation::Aggregation(const NodeMatrix                         &K,
                            const CorrectedMatrix                    &A,

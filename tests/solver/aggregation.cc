@@ -42,7 +42,8 @@ namespace
         : problem(options)
         , K(problem.system.bulk)
         , n(dim * K.map().n_owned())
-        , A(K, taken_out(), springs(problem.layout, K.largest_diagonal()))
+        , scale(K.largest_diagonal())
+        , A(K, taken_out(), springs(problem.layout, scale))
         , modes(rigid_body_modes(K, problem.rigid_body_data))
         , out(std::cout, dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
     {
@@ -58,7 +59,7 @@ namespace
       std::vector<std::array<double, 9>> D_inverse(K.map().n_owned(), std::array<double, 9>{});
       for (unsigned int i = 0; i < K.map().n_owned(); ++i)
         for (unsigned int c = 0; c < dim; ++c)
-          D_inverse[i][4 * c] = 1. / K.largest_diagonal();
+          D_inverse[i][4 * c] = 1. / scale;
       constexpr double  omega = 0.6;
       const Aggregation coarse(K, A, modes, D_inverse, omega);
       const auto       &map      = coarse.matrix().RowMap();
@@ -73,7 +74,7 @@ namespace
         coarse.add_prolongation(prolonged.data(), coarse_mode);
         const std::vector<double> product = apply(wanted);
         for (unsigned int i = 0; i < n; ++i)
-          wanted[i] -= omega / K.largest_diagonal() * product[i];
+          wanted[i] -= omega / scale * product[i];
         worst = std::max(worst, distance(prolonged, wanted));
       }
       report("prolonged modes are the smoothed ones", worst, 1e-6);
@@ -166,6 +167,7 @@ namespace
     ModelProblem::TwoCubes     problem;
     const NodeMatrix          &K;
     const unsigned int         n;
+    const double               scale; ///< of the stiffness
     const CorrectedMatrix      A;
     const std::vector<double>  modes;
     dealii::ConditionalOStream out;

@@ -19,8 +19,8 @@ namespace Nodus
   ///
   ///     P = (1 - omega D^-1 A) P_0,   A_coarse = P^T A P
   ///
-  /// P_0 holds the modes of each aggregate, orthonormal. Blocks need a ninth of the indices, and P^T A P takes a tenth
-  /// of the time that it takes a general sparse matrix.
+  /// P_0 holds the modes of each aggregate, orthonormal. Blocks need a ninth of the indices of a general sparse matrix,
+  /// and their products fill vector registers.
   class Aggregation
   {
   public:

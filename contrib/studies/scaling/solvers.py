@@ -1,0 +1,89 @@
+#!/usr/bin/python3
+"""The three linear solvers on every case of prm/: their answers differ by no more than the tolerances of Newton.
+
+Writes solvers.md. Cases may be named on the command line: the others keep their earlier results; without names all run.
+"""
+
+import json
+import os
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+import common  # noqa: E402
+
+SOLVERS = ("direct", "condensed", "block")
+TIGHT = {
+    "Newton/Force tolerance": "1e-11",
+    "Newton/Contact tolerance": "1e-11",
+    "Newton/Maximum iterations": "40",
+    "Linear solver/Tolerance": "1e-13",
+    "Output/Write VTU": "false",
+}
+MODES = {f"{loop} loop/Mode": "newton" for loop in ("Geometry", "Threshold", "Status")}
+# Columns of one scale each; the numbers of nodes are compared exactly.
+GROUPS = {
+    "force": [f"slave force {axis}" for axis in "xyz"],
+    "moment": [f"slave moment {axis}" for axis in "xyz"],
+    "area": ["contact area"],
+    "pressure": ["maximum pressure"],
+}
+STATUSES = [f"{status} nodes" for status in ("open", "slip", "stick", "unpaired")]
+
+
+def difference(rows, reference):
+    """Largest difference of the columns in all increments, relative to the largest value of their group."""
+    worst = 0.0
+    for columns in GROUPS.values():
+        scale = max(abs(row[c]) for row in reference for c in columns)
+        for row, other in zip(rows, reference):
+            for c in columns:
+                worst = max(worst, abs(row[c] - other[c]) / scale if scale > 0.0 else 0.0)
+    return worst
+
+
+def rows_of(case):
+    table, reference = [], None
+    for solver in SOLVERS:
+        prm = os.path.join(common.ROOT, "prm", case + ".prm")
+        run = common.run(prm, f"solvers_{case}_{solver}", {**MODES, **TIGHT, "Linear solver/Type": solver})
+        if not run.converged:
+            table.append([case, solver, "stops", "", "", "", f"{run.cpu:.1f}"])
+            continue
+        rows = run.contact()
+        counts = {row["increment"]: row for row in rows}.values()
+        reference = reference or rows
+        table.append([
+            case,
+            solver,
+            "" if rows is reference else f"{difference(rows, reference):.0e}",
+            "" if rows is reference else
+            "yes" if all(a[c] == b[c] for a, b in zip(rows, reference) for c in STATUSES) else "no",
+            int(sum(row["fallbacks"] for row in counts)),
+            int(sum(row["Newton iterations"] for row in counts)),
+            f"{run.cpu:.1f}",
+        ])  # fmt: skip
+    return table
+
+
+def main():
+    store = os.path.join(HERE, "solvers.json")
+    known = json.load(open(store)) if os.path.exists(store) else {}
+    cases = sorted(name[:-4] for name in os.listdir(os.path.join(common.ROOT, "prm")) if name.endswith(".prm"))
+    for case in sys.argv[1:] or cases:
+        known[case] = rows_of(case)
+        with open(store, "w") as file:
+            json.dump(known, file, indent=0)
+    path = os.path.join(HERE, "solvers.md")
+    text = common.table(
+        path,
+        ["case", "solver", "largest difference to direct", "same statuses", "fallbacks", "Newton iterations", "CPU s"],
+        [row for case in cases if case in known for row in known[case]],
+    )
+    with open(path, "w") as file:
+        file.write(__doc__.split("\n")[0] + "\n\nForces, moments, areas and largest pressures of all increments, relative"
+                   " to the largest of their kind.\nMade by `contrib/studies/scaling/solvers.py`.\n\n" + text)
+
+
+if __name__ == "__main__":
+    main()
