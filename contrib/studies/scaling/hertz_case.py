@@ -88,25 +88,27 @@ def dofs(n):
 class Mesh:
     """nodes (n, 3); cells: body -> (n, 8); faces: (body, side) -> (numbers of the cells in all bodies, (n, 4) nodes)."""
 
-    def __init__(self, n):
+    def __init__(self, n, layers=None):
+        """layers: cells over the height of each body, if not as along the other edges."""
         upper, lower = lines(n), lines(round(1.25 * n))
+        heights = [lines(layers)] * 2 if layers else [upper, lower]
         self.n, self.cells, self.faces, nodes, before, cells_before = n, {}, {}, [], 0, 0
-        for body, (x, z) in enumerate([(upper, upper), (lower, -lower[::-1])], 1):
+        for body, (x, z) in enumerate([(upper, heights[0]), (lower, -heights[1][::-1])], 1):
             grid = np.stack(np.meshgrid(z, x, x, indexing="ij")[::-1], axis=-1)  # index z, y, x
             if body == 1:
                 rise = (grid[..., 0] ** 2 + grid[..., 1] ** 2) / (2 * R)
                 grid[..., 2] += (1 - grid[..., 2]) * rise
-            number = before + np.arange(len(x) ** 3).reshape(3 * (len(x),))
-            m = len(x) - 1
-            cells = np.stack([number[k : m + k, j : m + j, i : m + i] for i, j, k in CORNERS], axis=-1)
+            number = before + np.arange(grid[..., 0].size).reshape(grid.shape[:3])
+            m, m_z = len(x) - 1, len(z) - 1
+            cells = np.stack([number[k : m_z + k, j : m + j, i : m + i] for i, j, k in CORNERS], axis=-1)
             for side, corners in SIDES.items():
                 axis, layer = 2 - "xyz".index(side[0]), -1 if side[1] == "+" else 0
-                numbers = np.arange(m**3).reshape(m, m, m).take(layer, axis).ravel()
+                numbers = np.arange(m_z * m * m).reshape(m_z, m, m).take(layer, axis).ravel()
                 self.faces[body, side] = (cells_before + numbers, cells.reshape(-1, 8)[numbers][:, corners])
             self.cells[body] = cells.reshape(-1, 8)
             nodes.append(grid.reshape(-1, 3))
             before += number.size
-            cells_before += m**3
+            cells_before += m_z * m * m
         self.nodes = np.concatenate(nodes)
         self.slave, self.master = self.faces[1, "z-"], self.faces[2, "z+"]
         self.slave_nodes = np.unique(self.slave[1])
@@ -210,8 +212,9 @@ def measured(command, log, folder=None, environment=None):
     }
 
 
-def nodus(n, name, solver="condensed", friction=0.0, ranks=1, sets=None):
-    """One run of nodus: what measured() returns, "profile" (profile.json), "contact" (row of contact.csv), "folder"."""
+def nodus(n, name, solver="condensed", friction=0.0, ranks=1, sets=None, preload=None):
+    """One run of nodus: what measured() returns, "profile" (profile.json), "contact" (row of contact.csv), "folder".
+    preload: a library that nodus, not mpirun, is to load first."""
     folder = os.path.join(common.SCRATCH, "hertz", name)
     os.makedirs(folder, exist_ok=True)
     prm = write(n, os.path.dirname(folder))
@@ -223,12 +226,17 @@ def nodus(n, name, solver="condensed", friction=0.0, ranks=1, sets=None):
         **(sets or {}),
     }
     command = [common.NODUS, prm, "--profile"] + [x for key in keys.items() for x in ("--set", "{}={}".format(*key))]
+    variables = environment()
     if ranks > 1:
-        command = ["mpirun", "-n", str(ranks)] + command
+        loaded = ["-x", "LD_PRELOAD=" + preload, "-x", "MPI_COUNT"] if preload else []
+        command = ["mpirun", *loaded, "-n", str(ranks)] + command
+    elif preload:
+        variables["LD_PRELOAD"] = preload
+    variables["MPI_COUNT"] = os.path.join(folder, "mpi_count")
     for old in ("profile.json", "contact.csv"):
         if os.path.exists(os.path.join(folder, old)):
             os.remove(os.path.join(folder, old))
-    result = measured(command, os.path.join(folder, "log"), environment=environment())
+    result = measured(command, os.path.join(folder, "log"), environment=variables)
     result["folder"] = folder
     if result["exit"] == 0:
         with open(os.path.join(folder, "profile.json")) as file:

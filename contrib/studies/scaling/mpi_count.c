@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 #include <time.h>
 
 enum { n_kinds = 4 };
@@ -162,6 +163,43 @@ int MPI_Alltoall(const void *b, int n, MPI_Datatype t, void *b2, int n2, MPI_Dat
   TIMED(PMPI_Alltoall(b, n, t, b2, n2, t2, c))
 }
 
+int MPI_Alltoallv(const void *b, const int *n, const int *d, MPI_Datatype t, void *b2, const int *n2, const int *d2, MPI_Datatype t2, MPI_Comm c)
+{
+  count(3, 0, t, -1);
+  TIMED(PMPI_Alltoallv(b, n, d, t, b2, n2, d2, t2, c))
+}
+int MPI_Comm_dup(MPI_Comm c, MPI_Comm *c2)
+{
+  count(3, 0, MPI_BYTE, -1);
+  TIMED(PMPI_Comm_dup(c, c2))
+}
+int MPI_Comm_split(MPI_Comm c, int colour, int key, MPI_Comm *c2)
+{
+  count(3, 0, MPI_BYTE, -1);
+  TIMED(PMPI_Comm_split(c, colour, key, c2))
+}
+int MPI_Comm_create(MPI_Comm c, MPI_Group g, MPI_Comm *c2)
+{
+  count(3, 0, MPI_BYTE, -1);
+  TIMED(PMPI_Comm_create(c, g, c2))
+}
+int MPI_Comm_free(MPI_Comm *c)
+{
+  TIMED(PMPI_Comm_free(c))
+}
+int MPI_Waitsome(int n, MPI_Request *r, int *m, int *i, MPI_Status *s)
+{
+  TIMED(PMPI_Waitsome(n, r, m, i, s))
+}
+int MPI_Testany(int n, MPI_Request *r, int *i, int *flag, MPI_Status *s)
+{
+  TIMED(PMPI_Testany(n, r, i, flag, s))
+}
+int MPI_Mprobe(int from, int tag, MPI_Comm c, MPI_Message *m, MPI_Status *s)
+{
+  TIMED(PMPI_Mprobe(from, tag, c, m, s))
+}
+
 int MPI_Finalize(void)
 {
   int               rank, partners = 0;
@@ -177,6 +215,12 @@ int MPI_Finalize(void)
     for (int k = 0; k < n_kinds; ++k)
       fprintf(file, "%s %.0f\n%s bytes %.0f\n", kinds[k], calls[k], kinds[k], bytes[k]);
     fprintf(file, "partners %d\ncpu %.6f\n", partners, cpu);
+    struct timespec process;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &process);
+    fprintf(file, "process cpu %.6f\n", process.tv_sec + 1e-9 * process.tv_nsec);
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    fprintf(file, "peak %.0f\n", 1024. * usage.ru_maxrss);
     fclose(file);
   }
   return PMPI_Finalize();

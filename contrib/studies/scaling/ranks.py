@@ -1,12 +1,14 @@
 #!/usr/bin/python3
-"""The case `hertz` on 1 to 16 ranks: CPU and its balance on 1 and 2, the same results on all.
+"""The case `hertz` on 1 to 16 ranks: the same results, work of the ranks and its balance, messages.
 
     ranks.py [N]...    (default: 12 24)
 
-Writes ranks.md; sizes that are not named keep their results of ranks.json.
+Writes ranks.md; sizes that are not named keep their results of ranks.json. mpi_count.c, preloaded, counts messages and
+takes the CPU that is spent in MPI, most of it waiting, off.
 """
 
 import os
+import subprocess
 import sys
 
 import hertz_case
@@ -17,6 +19,9 @@ DEFAULT = [12, 24]
 RANKS = [1, 2, 4, 8, 16]
 FRICTION = 0.3
 SOLVER = "condensed"
+# Two runs that differ in Krylov iterations only: what one of these sends.
+MESSAGE_RANKS, TOLERANCES = 8, ("1e-10", "1e-3")
+COUNTS = ["messages", "messages bytes", "reductions", "gathers", "gathers bytes", "other collectives"]
 
 
 def nodal(mesh, folder):
@@ -32,101 +37,146 @@ def nodal(mesh, folder):
     return displacement, hertz_case.pressures(mesh, folder)
 
 
-def measure(n):
+def counting_library():
+    path = os.path.join(common.SCRATCH, "libmpi_count.so")
+    source = os.path.join(hertz_case.HERE, "mpi_count.c")
+    subprocess.run(["mpicc", "-O2", "-shared", "-fPIC", "-o", path, source], check=True)
+    return path
+
+
+def counted(folder, ranks):
+    """What mpi_count.c wrote: name -> one value for each rank."""
+    result = {}
+    for rank in range(ranks):
+        with open(os.path.join(folder, f"mpi_count.{rank}")) as file:
+            for line in file:
+                name, value = line.rsplit(" ", 1)
+                result.setdefault(name, []).append(float(value))
+    return {name: np.array(values) for name, values in result.items()}
+
+
+def measure(n, library):
     mesh, result = hertz_case.Mesh(n), {}
     for ranks in RANKS:
-        run = hertz_case.nodus(n, f"ranks_{n}_{ranks}", SOLVER, FRICTION, ranks)
+        run = hertz_case.nodus(n, f"ranks_{n}_{ranks}", SOLVER, FRICTION, ranks, preload=library)
         if run["exit"] != 0:
             result[str(ranks)] = {"converged": False}
             continue
-        contact, profile = run["contact"], run["profile"]
+        contact, profile, count = run["contact"], run["profile"], counted(run["folder"], ranks)
         force = np.array([contact[f"slave force {axis}"] for axis in "xyz"])
-        statuses = [int(contact[f"{name} nodes"]) for name in ("open", "slip", "stick")]
         displacement, pressure = nodal(mesh, run["folder"])
         if ranks == 1:
             first = force, contact["maximum pressure"], displacement, pressure
+        start = next(p["cpu_seconds"] for p in profile["phases"] if p["name"] == "program start") / ranks
+        work = count["process cpu"] - count["cpu"] - start
         result[str(ranks)] = {
             "converged": True,
             "cpu": profile["total"]["cpu_seconds"],
-            "busiest": profile["total"]["cpu_seconds_maximum"] / profile["total"]["cpu_seconds_mean"],
-            "phases": {
-                p["name"]: [p["cpu_seconds"], p["cpu_seconds_maximum"] / max(p["cpu_seconds_mean"], 1e-9)]
-                for p in profile["phases"]
-            },
+            "work": work.sum(),
+            "busiest": work.max() / work.mean(),
             "peak": profile["total"]["peak_resident_bytes"],
+            "peak before": profile["phases"][0]["peak_resident_bytes"],
+            "peak set-up": profile["phases"][1]["peak_resident_bytes"],
             "Newton": profile["newton_iterations"],
             "Krylov": profile["krylov_iterations"],
-            "statuses": statuses,
+            "statuses": [int(contact[f"{name} nodes"]) for name in ("open", "slip", "stick")],
             "force": np.abs(force - first[0]).max() / np.abs(first[0]).max(),
             "largest": abs(contact["maximum pressure"] / first[1] - 1),
             "displacement": np.abs(displacement - first[2]).max() / np.abs(first[2]).max(),
             "pressure": np.abs(pressure - first[3]).max() / first[3].max(),
         }
+    runs = []
+    for tolerance in TOLERANCES:
+        name, sets = f"ranks_{n}_messages", {"Linear solver/Tolerance": tolerance}
+        run = hertz_case.nodus(n, name, SOLVER, 0.0, MESSAGE_RANKS, sets, library)
+        count = {key: values.mean() for key, values in counted(run["folder"], MESSAGE_RANKS).items()}
+        profile = run["profile"]
+        set_ups = next(p["calls"] for p in profile["phases"] if p["name"] == "solver set-up")
+        runs.append((profile["newton_iterations"], set_ups, profile["krylov_iterations"], count))
+    (newton, set_ups, krylov, count), (newton_2, set_ups_2, krylov_2, count_2) = runs
+    if (newton, set_ups) == (newton_2, set_ups_2) and krylov > krylov_2:
+        per = {name: (count[name] - count_2[name]) / (krylov - krylov_2) for name in COUNTS}
+        rest = {name: (count[name] - krylov * per[name]) / newton for name in COUNTS}
+        result["sent"] = {"Newton": newton, "Krylov": krylov, "per Krylov": per, "rest per Newton": rest}
     return result
 
 
 def main():
     kept = hertz_case.Kept("ranks")
+    os.makedirs(common.SCRATCH, exist_ok=True)
+    library = counting_library()
     for n in map(int, sys.argv[1:] or DEFAULT):
-        kept[str(n)] = measure(n)
-    rows, cpu = [], []
+        kept[str(n)] = measure(n, library)
+    write(kept)
+
+
+def write(kept):
+    rows, work, memory, sent = [], [], [], []
     for n in sorted(map(int, kept.values)):
+        found = kept.get(str(n))
         for ranks in RANKS:
-            r = kept.get(str(n))[str(ranks)]
+            r, first = found[str(ranks)], found["1"]
             if not r["converged"]:
                 rows.append([n, ranks, "stops", *[""] * 6])
                 continue
             statuses = "/".join(map(str, r["statuses"]))
             differences = [f"{r[name]:.0e}" for name in ("force", "largest", "displacement", "pressure")]
             rows.append([n, ranks, r["Newton"], r["Krylov"], statuses, *(differences if ranks > 1 else [""] * 4)])
-            if ranks <= 2:
-                for name in [*r["phases"], "total"]:
-                    total, busiest = r["phases"][name] if name != "total" else (r["cpu"], r["busiest"])
-                    if total > 0.005 * r["cpu"]:
-                        cpu.append((n, ranks, name, total, busiest))
+            again = f"{100 * (r['work'] / first['work'] - 1) / (ranks - 1):.1f} %" if ranks > 1 else ""
+            work.append([n, ranks, f"{r['cpu']:.1f}", f"{r['work']:.2f}", f"{r['work'] / first['work']:.2f}", again,
+                         f"{r['busiest']:.2f}"])  # fmt: skip
+            peaks = [r["peak before"], r["peak set-up"] - r["peak before"], r["peak"] - r["peak before"]]
+            memory.append([n, ranks, *[f"{p / 2**20 / ranks:.1f}" for p in peaks]])
+        if "sent" in found:
+            for what in ("per Krylov", "rest per Newton"):
+                values = found["sent"][what]
+                sent.append([n, MESSAGE_RANKS, what, *[hertz_case.spaced(values[name]) for name in COUNTS]])
     path = os.path.join(hertz_case.HERE, "ranks.md")
-    balance = []
-    for n, ranks, name, total, busiest in cpu:
-        if ranks == 2:
-            alone = sum(c[3] for c in cpu if c[:3] == (n, 1, name))
-            ratio = f"{total / alone:.2f}" if alone > 0 else ""
-            balance.append([n, name, f"{alone:.2f}", f"{total:.2f}", ratio, f"{busiest:.2f}"])
-    header = ["n", "phase", "CPU s, 1 rank", "2 ranks together", "ratio", "busier / mean"]
-    balance_text = common.table(path, header, balance)
-    memory = []
-    for n in sorted(map(int, kept.values)):
-        peaks = [kept.get(str(n))[str(ranks)].get("peak", 0.0) for ranks in RANKS]
-        memory.append([n, *[f"{p / 2**20 / ranks:.0f}" for p, ranks in zip(peaks, RANKS)]])
-    memory_text = common.table(path, ["n", *[f"{r} rank{'s' * (r > 1)}" for r in RANKS]], memory)
     header = ["n", "ranks", "Newton", "Krylov", "open/slip/stick", "force", "largest pressure", "displacements",
               "pressures"]  # fmt: skip
     text = common.table(path, header, rows)
+    header = ["n", "ranks", "CPU s", "work s", "work / 1 rank", "again on each further rank", "busiest / mean"]
+    work_text = common.table(path, header, work)
+    memory_text = common.table(path, ["n", "ranks", "at start", "mesh and set-up", "whole run"], memory)
+    sent_text = common.table(path, ["n", "ranks", "", *COUNTS], sent)
     with open(path, "w") as file:
         file.write(f"""## Ranks
 
 `contrib/studies/scaling/ranks.py` on {hertz_case.machine()}; {kept.dates()}. Case hertz (`hertz_case.py`) with friction
-{FRICTION}, {SOLVER} solver. More ranks than cores say nothing about speed; they are here for the results only.
+{FRICTION}, {SOLVER} solver. More ranks than cores say nothing about wall time; they are here for results, work, memory
+and messages.
 
 ### The same results
 
 Differences from one rank, each relative to the largest value there: total contact force, largest pressure (of
 `contact.csv`, 12 digits), displacements of all nodes and pressures of all slave nodes (of the VTU files, in single
-precision: 1e-7 is their rounding).
+precision: 1e-7 is their rounding). Newton may stop one iteration earlier or later: the coarse levels depend on the
+ranks, and so do the last digits of a correction.
 
 {text}
-### CPU on two ranks
+### Work and its balance
 
-CPU of `profile.json`: user and system time of the processes, summed over ranks, and of the busier rank over the mean.
-A rank that waits for a message polls in Open MPI, and that counts as CPU of the phase it is in (also with
-`mpi_yield_when_idle`, used here): a ratio above 1 is work done twice, waiting, or both, and waiting makes the two ranks
-look equally busy. With other programs on the two cores the ranks also wait for each other's turns.
+*CPU*: user and system time of all ranks, from `profile.json`. A rank that waits for a message polls in Open MPI, and
+that counts as CPU (also with `mpi_yield_when_idle`, used here). *Work* is therefore the CPU outside of MPI calls,
+without the start of the program (0.4 s on each rank), summed over the ranks: `mpi_count.c`, preloaded, takes the CPU time
+of each MPI call off. *Again on each further rank*: what a rank adds to the work, relative to the work of one rank alone:
+work that every rank does for the whole model, on cells around its own (stiffnesses of neighbours' cells are integrated
+again), and what ranks that share a core take from each other's cache.
 
-{balance_text}
+{work_text}
 ### Peak resident MiB per rank
 
-Mean over ranks, with the code of all libraries (some 145 MiB), which ranks of one machine share.
+Mean over ranks. *At start*: code of all libraries, which ranks of one machine share. The others are beyond that; what
+does not fall with more ranks is held by each rank for the whole model.
 
-{memory_text}""")
+{memory_text}
+### Messages
+
+Calls of MPI by each rank, mean over {MESSAGE_RANKS} ranks, without friction. *Per Krylov*: difference of two runs that
+differ in the tolerance of the linear solver, and by it in Krylov iterations only; *rest per Newton*: all the others.
+Bytes are those sent. *Other collectives* are nearly all barriers: Epetra has one in each exchange between neighbours.
+
+{sent_text}""")
 
 
 if __name__ == "__main__":
