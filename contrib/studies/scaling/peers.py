@@ -18,7 +18,7 @@ from hertz_case import common
 
 DEFAULT = [6, 12, 24]
 PEERS = ("CalculiX", "Kratos")
-HEADER = ["n", "degrees of freedom", "program", "CPU s", "/ nodus", "peak MiB", "bytes per DoF", "private MiB",
+HEADER = ["n", "degrees of freedom", "rounds", "program", "CPU s", "/ nodus", "peak MiB", "bytes per DoF", "private MiB",
           "private bytes per DoF", "Newton iterations", "error of the pressure", "largest / Hertz's"]  # fmt: skip
 
 
@@ -54,15 +54,15 @@ def run(program, n, mesh):
     return result
 
 
-def measure(n, programs):
-    """The round with the least CPU of each program."""
+def measure(n, programs, kept):
+    """Keeps the round with the least CPU of each program; after each round, should a later one be interrupted."""
     mesh, best = hertz_case.Mesh(n), {}
-    for _ in range(rounds(n)):
+    for done in range(1, rounds(n) + 1):
         for program in programs:
             result = run(program, n, mesh)
             if program not in best or result["cpu"] < best[program]["cpu"]:
                 best[program] = result
-    return best
+        kept[str(n)] = {**best, "rounds": done}
 
 
 def rows(kept):
@@ -73,11 +73,12 @@ def rows(kept):
                 continue
             r = found[program]
             if not r["converged"]:
-                yield [n, hertz_case.spaced(dofs), program, "stops", *[""] * 8]
+                yield [n, hertz_case.spaced(dofs), found.get("rounds", ""), program, "stops", *[""] * 8]
                 continue
             yield [
                 n,
                 hertz_case.spaced(dofs),
+                found.get("rounds", ""),
                 program,
                 f"{r['cpu']:.2f}" if r["cpu"] < 10 else f"{r['cpu']:.1f}",
                 f"{r['cpu'] / found['nodus']['cpu']:.2f}",
@@ -95,7 +96,7 @@ def main():
     kept = hertz_case.Kept("peers")
     programs = ["nodus"] + [program for program in PEERS if available(program)]
     for n in map(int, sys.argv[1:] or DEFAULT):
-        kept[str(n)] = measure(n, programs)
+        measure(n, programs, kept)
     path = os.path.join(hertz_case.HERE, "peers.md")
     text = common.table(path, HEADER, rows(kept))
     with open(path, "w") as file:
@@ -119,6 +120,10 @@ largest anonymous part of it (heap and stacks), sampled every 10 ms: what grows 
 sqrt(sum w (p - p_H)^2 / sum w p_H^2), w the area of the slave mesh around each node. p_H and the circle are those of
 the force that each program computed: a = (3 F R / 4 E*)^(1/3), p_0 = 3 F / (2 pi a^2). Blocks as small as these (the
 circle has 0.45 of their edge) press a little differently from half-spaces, so the error does not go to zero.
+
+Kratos' pressures are its augmented normal pressures at active slave nodes. At n = 12 single values reach 2.4 times
+Hertz's while its force agrees with the others; whether that is Kratos, its settings here or the way they are read was
+not examined, so its errors are to be taken with care.
 
 {text}""")
 
