@@ -189,7 +189,7 @@ namespace Nodus
 
   struct OutputParameters
   {
-    std::string  results_folder;   ///< empty = results/<name of the .prm file>, in the working folder
+    std::string  results_folder; ///< empty = results/<name of the .prm file>, in the working folder
     bool         write_vtu    = true;
     unsigned int vtu_interval = 1; ///< every so many increments; 0 = only the last one
   };

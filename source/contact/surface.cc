@@ -17,35 +17,9 @@ namespace Nodus
   {
     /// Sites are numbered by face and place on the face; no rule has as many points.
     constexpr DoFIndex places_on_face = 1024;
-    /// Work of a cell (assembly, solution with multigrid) and, on top, of a slave face (search, jumps, couplings): 0.24
-    /// against 1.06 ms of a Hertz case with 40824 cells and 576 slave faces.
-    constexpr unsigned int cell_weight = 1000, slave_face_weight = 4000;
     /// Master faces are fetched anew when a node has moved by this part of the smallest mean slave face size.
     constexpr double relative_moves = 0.2;
-
-    std::string pair_label(const std::vector<ContactPairParameters> &pairs, const unsigned int pair)
-    {
-      return "Contact pair " + std::to_string(pair + 1) +
-             (pairs[pair].name.empty() ? "" : " ('" + pairs[pair].name + "')");
-    }
   } // namespace
-
-  void
-  balance_contact(const std::vector<ContactPairParameters> &pairs, const dealii::Mapping<dim> &mapping, Bodies &bodies)
-  {
-    std::vector<Region> slaves;
-    for (unsigned int p = 0; p < pairs.size(); ++p)
-      slaves.emplace_back(pairs[p].slave, bodies, pair_label(pairs, p) + ", slave");
-    bodies.balance(
-        [&](const Bodies::Triangulation::cell_iterator &cell)
-        {
-          unsigned int weight = cell_weight;
-          for (const unsigned int f : cell->face_indices())
-            for (const Region &region : slaves)
-              weight += cell->face(f)->at_boundary() && region.selects_face(mapping, cell, f) ? slave_face_weight : 0;
-          return weight;
-        });
-  }
 
   ContactSurfaces::ContactSurfaces(const std::vector<ContactPairParameters> &pairs,
                                    const Bodies                             &bodies,

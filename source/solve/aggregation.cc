@@ -232,7 +232,7 @@ namespace Nodus
     values_ = std::make_unique<Epetra_MultiVector>(*column_map_, 1);
   }
 
-  /// Rows of P at the ghosts of A, by global aggregate;
+  /// Rows of P at the ghosts of A, by global aggregate.
   std::vector<Aggregation::Row> Aggregation::ghost_rows() const
   {
     std::vector<DoFIndex> ghosts;
@@ -307,12 +307,12 @@ namespace Nodus
                     for (const auto &entry : ghost_rows[j - n_owned])
                       add_product(block, transposed, load(entry.second.data()), product[column(entry.first)]);
                 });
-      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+      for (unsigned int l = 0; l < product.columns().size(); ++l)
       {
-        CoarseRow &row = rows[column_[k]];
-        for (unsigned int l = 0; l < product.columns().size(); ++l)
-          add_transposed_product(
-              &blocks_[block_size * std::size_t(k)], product.panel(l), row[columns[product.columns()[l]]]);
+        const Panel   &panel  = product.panel(l);
+        const DoFIndex global = columns[product.columns()[l]];
+        for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+          add_transposed_product(&blocks_[block_size * std::size_t(k)], panel, rows[column_[k]][global]);
       }
       product.clear();
     }

@@ -42,6 +42,9 @@ namespace Nodus
     double       xi, eta, weight; ///< of the rule on [0, 1]^2
   };
 
+  /// How messages call a pair: its number, and its name when it has one.
+  std::string pair_label(const std::vector<ContactPairParameters> &pairs, unsigned int pair);
+
   /// Divides the cells among the ranks so that those with slave faces, where contact is searched and assembled, do not
   /// all come on top of an equal share. Collective.
   void
