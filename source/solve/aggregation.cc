@@ -21,15 +21,16 @@ namespace Nodus
 
   Aggregation::Aggregation(const NodeMatrix                         &K,
                            const CorrectedMatrix                    &A,
-                           const std::vector<double>                &modes,
+                           std::vector<double>                       modes,
                            const std::vector<std::array<double, 9>> &D_inverse,
                            const double                              omega)
-      : nodes_(A.map())
+      : A_(A)
+      , nodes_(A.map())
   {
     aggregate(K, modes);
-    make_tentative(modes);
-    smooth(K, A, D_inverse, omega);
-    make_coarse_matrix(K, A);
+    make_tentative(std::move(modes));
+    smooth(K, D_inverse, omega);
+    make_maps();
   }
 
   /// A node and its neighbours, as long as none of them is taken; the others join a neighbour's aggregate. Bodies do
@@ -108,22 +109,18 @@ namespace Nodus
     const auto         numbers = dealii::Utilities::MPI::all_gather(nodes_.communicator(), n_aggregates_);
     const unsigned int rank    = dealii::Utilities::MPI::this_mpi_process(nodes_.communicator());
     first_                     = std::accumulate(numbers.begin(), numbers.begin() + rank, DoFIndex(0));
-    const DoFIndex total       = std::accumulate(numbers.begin(), numbers.end(), DoFIndex(0));
-    row_map_                   = std::make_unique<Epetra_Map>(static_cast<int>(n_modes * total),
-                                            static_cast<int>(n_modes * n_aggregates_),
-                                            0,
-                                            Epetra_MpiComm(nodes_.communicator()));
+    total_                     = std::accumulate(numbers.begin(), numbers.end(), DoFIndex(0));
   }
 
   /// Gram-Schmidt on the modes of each aggregate; what it takes off are the modes in the coarse unknowns.
-  void Aggregation::make_tentative(const std::vector<double> &modes)
+  void Aggregation::make_tentative(std::vector<double> modes)
   {
     const unsigned int                     n = dim * nodes_.n_owned(), n_coarse = n_modes * n_aggregates_;
     std::vector<std::vector<unsigned int>> dofs(n_aggregates_);
     for (unsigned int i = 0; i < n; ++i)
       if (aggregate_[i / dim] != none)
         dofs[aggregate_[i / dim]].push_back(i);
-    tentative_ = modes;
+    tentative_ = std::move(modes);
     coarse_modes_.assign(std::max(1U, n_modes * n_coarse), 0.);
     for (unsigned int a = 0; a < n_aggregates_; ++a)
     {
@@ -153,10 +150,7 @@ namespace Nodus
     }
   }
 
-  void Aggregation::smooth(const NodeMatrix                         &K,
-                           const CorrectedMatrix                    &A,
-                           const std::vector<std::array<double, 9>> &D_inverse,
-                           const double                              omega)
+  void Aggregation::smooth(const NodeMatrix &K, const std::vector<std::array<double, 9>> &D_inverse, const double omega)
   {
     // aggregates and modes at all local nodes
     const unsigned int n_owned = nodes_.n_owned(), n = nodes_.size();
@@ -191,13 +185,13 @@ namespace Nodus
     blocks_.reserve(5 * block_size * n_owned);
     for (unsigned int i = 0; i < n_owned; ++i)
     {
-      A.for_row(K,
-                i,
-                [&](const unsigned int j, const double *block, const bool transposed)
-                {
-                  if (aggregate_[j] != none)
-                    add_product(block, transposed, panels[j], row[aggregate_[j]]);
-                });
+      A_.for_row(K,
+                 i,
+                 [&](const unsigned int j, const double *block, const bool transposed)
+                 {
+                   if (aggregate_[j] != none)
+                     add_product(block, transposed, panels[j], row[aggregate_[j]]);
+                 });
       if (aggregate_[i] != none)
         row[aggregate_[i]];
       for (unsigned int k = 0; k < row.columns().size(); ++k)
@@ -220,7 +214,14 @@ namespace Nodus
     column_.shrink_to_fit();
     blocks_.resize(blocks_.size() + 2, 0.F); // for load()
     blocks_.shrink_to_fit();
+  }
 
+  void Aggregation::make_maps()
+  {
+    row_map_ = std::make_unique<Epetra_Map>(static_cast<int>(n_modes * total_),
+                                            static_cast<int>(n_modes * n_aggregates_),
+                                            0,
+                                            Epetra_MpiComm(nodes_.communicator()));
     std::vector<int> columns;
     for (unsigned int a = 0; a < n_aggregates_ + ghosts_.size(); ++a)
       for (unsigned int m = 0; m < n_modes; ++m)
@@ -228,8 +229,10 @@ namespace Nodus
     column_map_ =
         std::make_unique<Epetra_Map>(-1, static_cast<int>(columns.size()), columns.data(), 0, row_map_->Comm());
     if (dealii::Utilities::MPI::max(ghosts_.empty() ? 0 : 1, nodes_.communicator()) != 0)
+    {
       import_ = std::make_unique<Epetra_Import>(*column_map_, *row_map_);
-    values_ = std::make_unique<Epetra_MultiVector>(*column_map_, 1);
+      values_ = std::make_unique<Epetra_MultiVector>(*column_map_, 1);
+    }
   }
 
   /// Rows of P at the ghosts of A, by global aggregate.
@@ -260,7 +263,7 @@ namespace Nodus
     return rows;
   }
 
-  void Aggregation::make_coarse_matrix(const NodeMatrix &K, const CorrectedMatrix &A)
+  std::unique_ptr<NodeMatrix> Aggregation::make_coarse_matrix(const NodeMatrix &K) const
   {
     // columns of A P: aggregates in the rows of P of all local nodes
     const std::vector<Row> ghost_rows = this->ghost_rows();
@@ -296,32 +299,34 @@ namespace Nodus
     {
       if (start_[i] == start_[i + 1])
         continue;
-      A.for_row(K,
-                i,
-                [&](const unsigned int j, const double *block, const bool transposed)
-                {
-                  if (j < n_owned)
-                    for (std::uint32_t k = start_[j]; k < start_[j + 1]; ++k)
-                      add_product(block, transposed, load(&blocks_[block_size * std::size_t(k)]), product[column_[k]]);
-                  else
-                    for (const auto &entry : ghost_rows[j - n_owned])
-                      add_product(block, transposed, load(entry.second.data()), product[column(entry.first)]);
-                });
+      A_.for_row(K,
+                 i,
+                 [&](const unsigned int j, const double *block, const bool transposed)
+                 {
+                   if (j < n_owned)
+                     for (std::uint32_t k = start_[j]; k < start_[j + 1]; ++k)
+                       add_product(block, transposed, load(&blocks_[block_size * std::size_t(k)]), product[column_[k]]);
+                   else
+                     for (const auto &entry : ghost_rows[j - n_owned])
+                       add_product(block, transposed, load(entry.second.data()), product[column(entry.first)]);
+                 });
       for (unsigned int l = 0; l < product.columns().size(); ++l)
       {
-        const Panel   &panel  = product.panel(l);
-        const DoFIndex global = columns[product.columns()[l]];
+        const Panel   &panel    = product.panel(l);
+        const DoFIndex global   = columns[product.columns()[l]];
+        const bool     is_owned = product.columns()[l] < n_aggregates_;
         for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
-          add_transposed_product(&blocks_[block_size * std::size_t(k)], panel, rows[column_[k]][global]);
+          if (!(is_owned && column_[k] < n_aggregates_ && column_[k] > product.columns()[l])) // symmetric
+            add_transposed_product(&blocks_[block_size * std::size_t(k)], panel, rows[column_[k]][global]);
       }
       product.clear();
     }
-    matrix_ = Nodus::make_coarse_matrix(std::move(rows), first_, ghosts_, *row_map_, nodes_.communicator());
+    return Nodus::make_coarse_matrix(std::move(rows), first_, total_, ghosts_, nodes_.communicator());
   }
 
-  void Aggregation::restrict_to(Epetra_MultiVector &coarse, const double *const fine) const
+  void Aggregation::restrict_to(double *const coarse, const double *const fine) const
   {
-    double *const values = import_ ? (*values_)[0] : coarse[0];
+    double *const values = import_ ? (*values_)[0] : coarse;
     std::fill_n(values, n_modes * (n_aggregates_ + ghosts_.size()), 0.);
     for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
       for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
@@ -332,14 +337,21 @@ namespace Nodus
           sum[m] += p[m] * fine[dim * i] + p[n_modes + m] * fine[dim * i + 1] + p[2 * n_modes + m] * fine[dim * i + 2];
       }
     if (import_)
-      coarse.Export(*values_, *import_, Add);
+    {
+      Epetra_MultiVector view(View, *row_map_, coarse, n_modes * n_aggregates_, 1);
+      view.PutScalar(0.);
+      view.Export(*values_, *import_, Add);
+    }
   }
 
-  void Aggregation::add_prolongation(double *const fine, const Epetra_MultiVector &coarse) const
+  void Aggregation::add_prolongation(double *const fine, const double *const coarse) const
   {
     if (import_)
-      values_->Import(coarse, *import_, Insert);
-    const double *const values = import_ ? (*values_)[0] : coarse[0];
+    {
+      const Epetra_MultiVector view(View, *row_map_, const_cast<double *>(coarse), n_modes * n_aggregates_, 1);
+      values_->Import(view, *import_, Insert);
+    }
+    const double *const values = import_ ? (*values_)[0] : coarse;
     for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
       for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
       {

@@ -7,13 +7,13 @@ namespace Nodus
 {
   namespace
   {
-    constexpr unsigned int n_modes = CoarseRow::n_modes;
+    constexpr unsigned int n_modes = CoarseRow::n_modes, n_parts = n_modes / dim;
 
     /// Hands the rows behind the owned ones to their owners.
     void gather(std::vector<CoarseRow>      &rows,
                 const DoFIndex               first,
                 const std::vector<DoFIndex> &ghosts,
-                const Epetra_Map            &map,
+                const dealii::IndexSet      &owned,
                 const MPI_Comm               communicator)
     {
       const unsigned int       n_owned = rows.size() - ghosts.size();
@@ -26,65 +26,118 @@ namespace Nodus
                 entries.push_back({n_modes * ghosts[g] + k / n_modes, n_modes * column + k % n_modes, block[k]});
             });
       rows.resize(n_owned);
-      dealii::IndexSet owned(map.NumGlobalElements());
-      owned.add_range(n_modes * first, n_modes * (first + n_owned));
       for (const MatrixEntry &e : Ownership(owned, communicator).exchange(std::move(entries)))
         rows[e.row / n_modes - first][e.column / n_modes][n_modes * (e.row % n_modes) + e.column % n_modes] += e.value;
     }
+
+    void fill_diagonal(std::vector<CoarseRow> &rows, const DoFIndex first, const MPI_Comm communicator)
+    {
+      double largest = 0.;
+      for (unsigned int a = 0; a < rows.size(); ++a)
+        for (unsigned int m = 0; m < n_modes; ++m)
+          largest = std::max(largest, std::abs(rows[a][first + a][(n_modes + 1) * m]));
+      largest = dealii::Utilities::MPI::max(largest, communicator);
+      for (unsigned int a = 0; a < rows.size(); ++a)
+        for (unsigned int m = 0; m < n_modes; ++m)
+          if (double &entry = rows[a][first + a][(n_modes + 1) * m]; entry == 0.)
+            entry = largest > 0. ? largest : 1.;
+    }
   } // namespace
 
-  std::unique_ptr<Epetra_CrsMatrix> make_coarse_matrix(std::vector<CoarseRow>       rows,
-                                                       const DoFIndex               first,
-                                                       const std::vector<DoFIndex> &ghosts,
-                                                       const Epetra_Map            &map,
-                                                       const MPI_Comm               communicator)
+  std::unique_ptr<NodeMatrix> make_coarse_matrix(std::vector<CoarseRow>       rows,
+                                                 const DoFIndex               first,
+                                                 const DoFIndex               n_aggregates,
+                                                 const std::vector<DoFIndex> &ghosts,
+                                                 const MPI_Comm               communicator)
   {
+    const unsigned int n_owned = rows.size() - ghosts.size();
+    dealii::IndexSet   owned(n_modes * n_aggregates);
+    owned.add_range(n_modes * first, n_modes * (first + n_owned));
     if (dealii::Utilities::MPI::max(ghosts.empty() ? 0 : 1, communicator) != 0)
-      gather(rows, first, ghosts, map, communicator);
+      gather(rows, first, ghosts, owned, communicator);
+    fill_diagonal(rows, first, communicator);
 
-    double           largest = 0.;
-    std::vector<int> length(std::max(1, map.NumMyElements()), 0);
-    for (unsigned int a = 0; a < rows.size(); ++a)
+    std::vector<DoFIndex> ghost_nodes;
+    for (const CoarseRow &row : rows)
+      row.for_each(
+          [&](const DoFIndex column, const CoarseRow::Block &)
+          {
+            if (column < first || column >= first + n_owned)
+              for (unsigned int part = 0; part < n_parts; ++part)
+                ghost_nodes.push_back(n_parts * column + part);
+          });
+    auto       map     = std::make_shared<const NodeMap>(owned, std::move(ghost_nodes), communicator);
+    const auto is_read = [&](const unsigned int a, const DoFIndex column)
+    { return column >= first + a || column < first; };
+
+    auto matrix = std::make_unique<NodeMatrix>();
+    matrix->reinit(map,
+                   [&](const std::uint32_t i, std::vector<std::uint32_t> &columns)
+                   {
+                     rows[i / n_parts].for_each(
+                         [&](const DoFIndex column, const CoarseRow::Block &)
+                         {
+                           if (!is_read(i / n_parts, column))
+                             return;
+                           const unsigned int j = map->local(n_parts * column);
+                           for (unsigned int part = 0; part < n_parts; ++part)
+                             if (j + part > i)
+                               columns.push_back(j + part);
+                         });
+                   });
+    for (unsigned int a = 0; a < n_owned; ++a)
     {
-      const CoarseRow::Block &diagonal = rows[a][first + a];
-      unsigned int            n_blocks = 0;
-      rows[a].for_each([&](const DoFIndex, const CoarseRow::Block &) { ++n_blocks; });
-      for (unsigned int m = 0; m < n_modes; ++m)
-      {
-        largest                 = std::max(largest, std::abs(diagonal[(n_modes + 1) * m]));
-        length[n_modes * a + m] = n_modes * n_blocks;
-      }
+      rows[a].for_each(
+          [&](const DoFIndex column, const CoarseRow::Block &block)
+          {
+            if (!is_read(a, column))
+              return;
+            const unsigned int j = map->local(n_parts * column);
+            for (unsigned int part = 0; part < n_parts; ++part)
+              for (unsigned int other = 0; other < n_parts; ++other)
+                if (j + other >= n_parts * a + part)
+                {
+                  double *target = matrix->block(matrix->position(n_parts * a + part, j + other).block());
+                  for (unsigned int c = 0; c < dim; ++c)
+                    for (unsigned int d = 0; d < dim; ++d)
+                      target[dim * c + d] = block[n_modes * (dim * part + c) + dim * other + d];
+                }
+          });
+      rows[a] = CoarseRow(); // before the next ones are copied
     }
-    largest = dealii::Utilities::MPI::max(largest, communicator);
+    return matrix;
+  }
 
-    auto                matrix = std::make_unique<Epetra_CrsMatrix>(Copy, map, length.data(), true);
+  std::unique_ptr<Epetra_CrsMatrix> to_epetra(const NodeMatrix &matrix)
+  {
+    const NodeMap   &nodes = matrix.map();
+    std::vector<int> length(std::max(1U, dim * nodes.n_owned()), 0);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+    {
+      matrix.for_row(i, [&](const unsigned int, const double *, const bool) { length[dim * i] += dim; });
+      std::fill_n(&length[dim * i], dim, length[dim * i]);
+    }
+    auto                result = std::make_unique<Epetra_CrsMatrix>(Copy, nodes.row_map(), length.data(), true);
     std::vector<int>    columns;
     std::vector<double> values;
-    for (unsigned int a = 0; a < rows.size(); ++a)
-    {
-      CoarseRow::Block &diagonal = rows[a][first + a];
-      for (unsigned int m = 0; m < n_modes; ++m)
-        if (diagonal[(n_modes + 1) * m] == 0.)
-          diagonal[(n_modes + 1) * m] = largest > 0. ? largest : 1.;
-      for (unsigned int m = 0; m < n_modes; ++m)
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      for (unsigned int c = 0; c < dim; ++c)
       {
         columns.clear();
         values.clear();
-        rows[a].for_each(
-            [&](const DoFIndex column, const CoarseRow::Block &block)
-            {
-              for (unsigned int o = 0; o < n_modes; ++o)
-              {
-                columns.push_back(n_modes * column + o);
-                values.push_back(block[n_modes * m + o]);
-              }
-            });
-        matrix->InsertGlobalValues(
-            static_cast<int>(n_modes * (first + a) + m), columns.size(), values.data(), columns.data());
+        matrix.for_row(i,
+                       [&](const unsigned int j, const double *block, const bool transposed)
+                       {
+                         for (unsigned int d = 0; d < dim; ++d)
+                         {
+                           columns.push_back(dim * nodes.global(j) + d);
+                           values.push_back(block[transposed ? dim * d + c : dim * c + d]);
+                         }
+                       });
+        result->InsertGlobalValues(
+            static_cast<int>(dim * nodes.global(i) + c), columns.size(), values.data(), columns.data());
       }
-      rows[a] = CoarseRow();
-    }
-    matrix->FillComplete(map, map);
-    return matrix;
+    result->FillComplete(nodes.row_map(), nodes.row_map());
+    return result;
   }
 } // namespace Nodus

@@ -6,6 +6,7 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_control.h>
 #include <deal.II/lac/solver_gmres.h>
+#include <deal.II/lac/vector_memory.h>
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +66,7 @@ namespace Nodus
     matrix_ = std::make_unique<CorrectedMatrix>(system.bulk, condensation.taken_out(), condensation.correction());
     std::vector<double> modes = rigid_body_modes(system.bulk, rigid_body_data_);
     condensation.transform_modes(modes);
-    multigrid_        = std::make_unique<Multigrid>(system.bulk, *matrix_, modes, 2);
+    multigrid_        = std::make_unique<Multigrid>(system.bulk, *matrix_, std::move(modes), 2);
     signature_        = condensation.signature();
     first_iterations_ = last_iterations_ = 0.;
   }
@@ -117,17 +118,19 @@ namespace Nodus
                                       const double               tolerance,
                                       BlockVector               &x) const
   {
-    const BlockVector b = matrix.rhs();
-    BlockVector       r(b);
-    const double      norm_b   = b.l2_norm();
-    double            residual = norm_b;
-    unsigned int      n        = 0;
+    const BlockVector                          b = matrix.rhs();
+    BlockVector                                r(b);
+    const double                               norm_b   = b.l2_norm();
+    double                                     residual = norm_b;
+    unsigned int                               n        = 0;
+    dealii::PrimitiveVectorMemory<BlockVector> memory; // gives the basis back; deal.II's default keeps it
     // The residual that GMRES carries along can drift from the true one: start again until that one is small.
     for (unsigned int start = 0; start < 3 && !(residual <= tolerance * norm_b); ++start)
     {
       dealii::SolverControl control(parameters_.maximum_iterations - n, .9 * tolerance * norm_b, false, false);
       // preconditioned from the right: the residual is the true one; a linear preconditioner needs no flexible variant
-      dealii::SolverGMRES<BlockVector> solver(control, dealii::SolverGMRES<BlockVector>::AdditionalData(62, true));
+      dealii::SolverGMRES<BlockVector> solver(
+          control, memory, dealii::SolverGMRES<BlockVector>::AdditionalData(62, true));
       try
       {
         solver.solve(matrix, x, b, CondensedCycle(condensation, *multigrid_));

@@ -1,18 +1,28 @@
+#include <nodus/solve/coarse_matrix.h>
 #include <nodus/solve/multigrid.h>
 
 #include <deal.II/base/mpi.h>
 
-#include <Eigen/Eigenvalues>
 #include <Epetra_MultiVector.h>
 #include <Teuchos_ParameterList.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace Nodus
 {
+  namespace
+  {
+    /// Unknowns of the level that is left to ML, which then has few levels of its own.
+    constexpr unsigned int largest_for_library = 3000;
+
+    unsigned int size(const NodeMatrix &matrix)
+    {
+      return matrix.map().row_map().NumGlobalElements();
+    }
+  } // namespace
+
   std::vector<double> rigid_body_modes(const NodeMatrix &K, const RigidBodyData &data)
   {
     const MPI_Comm    comm = K.map().communicator();
@@ -50,153 +60,76 @@ namespace Nodus
     return modes;
   }
 
-  Multigrid::Multigrid(const NodeMatrix          &K,
-                       const CorrectedMatrix     &A,
-                       const std::vector<double> &modes,
-                       const unsigned int         smoother_sweeps)
-      : A_(A)
-      , sweeps_(smoother_sweeps)
+  Multigrid::Multigrid(const NodeMatrix      &K,
+                       const CorrectedMatrix &A,
+                       std::vector<double>    modes,
+                       unsigned int           smoother_sweeps)
   {
-    const unsigned int n = dim * A.map().n_owned();
-    for (auto *v : {&residual_, &update_, &product_})
-      v->resize(n);
-    make_diagonal(K);
-    largest_eigenvalue_ = largest_eigenvalue();
-    coarse_             = std::make_unique<Aggregation>(K, A, modes, D_inverse_, 4. / 3. / largest_eigenvalue_);
-    coarse_residual_    = std::make_unique<Epetra_MultiVector>(coarse_->matrix().RowMap(), 1);
-    coarse_correction_  = std::make_unique<Epetra_MultiVector>(coarse_->matrix().RowMap(), 1);
+    std::unique_ptr<NodeMatrix> matrix = add_level(K, nullptr, &A, modes, smoother_sweeps);
+    smoother_sweeps *= 2; // the coarse levels cost little
+    bool stalls = false;
+    while (!stalls && size(*matrix) > largest_for_library)
+    {
+      auto copy = std::make_unique<CorrectedMatrix>(
+          *matrix, std::vector<char>(matrix->map().size(), 0), std::vector<MatrixEntry>());
+      const CorrectedMatrix *const A_coarse = copy.get();
+      auto                         next     = add_level(*matrix, std::move(copy), A_coarse, modes, smoother_sweeps);
+      stalls                                = size(*next) > .5 * size(*matrix);
+      matrix                                = std::move(next);
+    }
 
-    using AMG = dealii::TrilinosWrappers::PreconditionAMG;
+    using AMG      = dealii::TrilinosWrappers::PreconditionAMG;
+    coarse_matrix_ = to_epetra(*matrix);
     AMG::AdditionalData data;
     data.elliptic              = true;
-    data.smoother_sweeps       = 2 * smoother_sweeps; // the coarse levels cost little
+    data.smoother_sweeps       = smoother_sweeps;
     data.aggregation_threshold = 0.;
     Teuchos::ParameterList              parameters;
     std::unique_ptr<Epetra_MultiVector> unused;
-    data.set_parameters(parameters, unused, coarse_->matrix());
+    data.set_parameters(parameters, unused, *coarse_matrix_);
+    modes.resize(std::max<std::size_t>(modes.size(), 1));
     parameters.set("PDE equations", static_cast<int>(Aggregation::n_modes));
     parameters.set("null space: type", "pre-computed");
     parameters.set("null space: dimension", static_cast<int>(Aggregation::n_modes));
-    parameters.set("null space: vectors", const_cast<double *>(coarse_->modes().data()));
+    parameters.set("null space: vectors", modes.data());
     parameters.set("null space: add default vectors", false);
-    ml_.initialize(coarse_->matrix(), parameters);
+    ml_.initialize(*coarse_matrix_, parameters);
   }
 
-  void Multigrid::make_diagonal(const NodeMatrix &K)
+  /// Takes the modes of the level and gives those of the next one, whose matrix it returns.
+  std::unique_ptr<NodeMatrix> Multigrid::add_level(const NodeMatrix                &K,
+                                                   std::unique_ptr<CorrectedMatrix> owned,
+                                                   const CorrectedMatrix           *A,
+                                                   std::vector<double>             &modes,
+                                                   const unsigned int               smoother_sweeps)
   {
-    using Matrix3 = Eigen::Matrix3d;
-    D_inverse_.resize(A_.map().n_owned());
-    for (unsigned int i = 0; i < D_inverse_.size(); ++i)
-    {
-      Matrix3 D = Matrix3::Zero();
-      A_.for_row(K,
-                 i,
-                 [&](const unsigned int j, const double *block, const bool)
-                 {
-                   if (j == i)
-                     D += Eigen::Map<const Matrix3>(block);
-                 });
-      // an indefinite tangent must not make the smoother indefinite
-      const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(D);
-      Eigen::Vector3d                              inverse = eigen.eigenvalues().cwiseAbs();
-      const double                                 largest = inverse.maxCoeff();
-      for (unsigned int c = 0; c < dim; ++c)
-        inverse[c] = inverse[c] > 1e-12 * largest ? 1. / inverse[c] : 0.;
-      Eigen::Map<Matrix3>(D_inverse_[i].data()) =
-          eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
-    }
-  }
-
-  void Multigrid::apply_diagonal(double *const dst, const double *const src) const
-  {
-    for (unsigned int i = 0; i < D_inverse_.size(); ++i)
-      for (unsigned int c = 0; c < dim; ++c)
-        dst[dim * i + c] = D_inverse_[i][dim * c] * src[dim * i] + D_inverse_[i][dim * c + 1] * src[dim * i + 1] +
-                           D_inverse_[i][dim * c + 2] * src[dim * i + 2];
-  }
-
-  /// Lanczos: a few stiff nodes at the contact must not escape, as they may escape the power iteration.
-  double Multigrid::largest_eigenvalue() const
-  {
-    constexpr unsigned int n_steps = 15;
-    const unsigned int     n       = residual_.size();
-    const auto             dot     = [&](const std::vector<double> &v, const std::vector<double> &w) {
-      return dealii::Utilities::MPI::sum(std::inner_product(v.begin(), v.end(), w.begin(), 0.),
-                                         A_.map().communicator());
-    };
-    std::vector<double> previous(n, 0.), &v = residual_, &z = update_, &w = product_;
-    for (unsigned int i = 0; i < n; ++i) // rough, and the same on any number of ranks
-      v[i] = std::sin(12.9898 * (dim * A_.map().global(i / dim) + i % dim + 1.));
-
-    Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(n_steps), beside = Eigen::VectorXd::Zero(n_steps - 1);
-    double          beta = 0.;
-    for (unsigned int step = 0; step < n_steps; ++step)
-    {
-      apply_diagonal(z.data(), v.data());
-      const double norm = std::sqrt(std::max(dot(v, z), 0.));
-      if (!(norm > 1e-12 * beta))
-        break;
-      if (step > 0)
-        beside[step - 1] = norm;
-      beta = step > 0 ? norm : 0.;
-      for (unsigned int i = 0; i < n; ++i)
-      {
-        v[i] /= norm;
-        z[i] /= norm;
-      }
-      A_.vmult(w.data(), z.data());
-      diagonal[step] = dot(w, z);
-      for (unsigned int i = 0; i < n; ++i)
-        w[i] -= diagonal[step] * v[i] + beta * previous[i];
-      previous.swap(v);
-      v.swap(w);
-    }
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
-    eigen.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
-    const double largest = eigen.eigenvalues().maxCoeff();
-    return largest > 0. ? 1.05 * largest : 1.;
-  }
-
-  void Multigrid::smooth(double *const x, double *const r, const bool last) const
-  {
-    const unsigned int n     = update_.size();
-    const double       upper = largest_eigenvalue_, lower = upper / 15.;
-    const double       theta = .5 * (upper + lower), delta = .5 * (upper - lower), sigma = theta / delta;
-    double             rho = 1. / sigma;
-    for (unsigned int sweep = 0; sweep < sweeps_; ++sweep)
-    {
-      apply_diagonal(product_.data(), r);
-      const double next = 1. / (2. * sigma - rho), factor = sweep == 0 ? 1. / theta : 2. * next / delta,
-                   momentum = sweep == 0 ? 0. : next * rho;
-      if (sweep > 0)
-        rho = next;
-      for (unsigned int i = 0; i < n; ++i)
-      {
-        update_[i] = momentum * update_[i] + factor * product_[i];
-        x[i] += update_[i];
-      }
-      if (last && sweep + 1 == sweeps_)
-        return;
-      A_.vmult(product_.data(), update_.data());
-      for (unsigned int i = 0; i < n; ++i)
-        r[i] -= product_[i];
-    }
+    Level level;
+    level.matrix                     = std::move(owned);
+    level.level                      = std::make_unique<MultigridLevel>(K, *A, std::move(modes), smoother_sweeps);
+    std::unique_ptr<NodeMatrix> next = level.level->transfer().make_coarse_matrix(K);
+    modes                            = std::move(level.level->transfer().modes());
+    for (auto *v : {&level.coarse_residual, &level.coarse_correction})
+      v->resize(dim * next->map().n_owned());
+    levels_.push_back(std::move(level));
+    return next;
   }
 
   void Multigrid::vmult(Vector &dst, const Vector &src) const
   {
-    double *const       x = dst.trilinos_vector()[0];
-    const double *const b = src.trilinos_vector()[0];
-    const unsigned int  n = residual_.size();
-    std::copy_n(b, n, residual_.begin());
-    std::fill_n(x, n, 0.);
-    smooth(x, residual_.data(), false);
-    coarse_->restrict_to(*coarse_residual_, residual_.data());
-    ml_.trilinos_operator().ApplyInverse(*coarse_residual_, *coarse_correction_);
-    coarse_->add_prolongation(x, *coarse_correction_);
-    A_.vmult(product_.data(), x);
-    for (unsigned int i = 0; i < n; ++i)
-      residual_[i] = b[i] - product_[i];
-    smooth(x, residual_.data(), true);
+    const auto x = [&](const unsigned int l)
+    { return l == 0 ? dst.trilinos_vector()[0] : levels_[l - 1].coarse_correction.data(); };
+    const auto b = [&](const unsigned int l)
+    { return l == 0 ? src.trilinos_vector()[0] : levels_[l - 1].coarse_residual.data(); };
+    for (unsigned int l = 0; l < levels_.size(); ++l)
+      levels_[l].level->pre_smooth(x(l), b(l), levels_[l].coarse_residual.data());
+
+    const Epetra_Map        &map  = coarse_matrix_->RowMap();
+    const Level             &last = levels_.back();
+    const Epetra_MultiVector residual(View, map, last.coarse_residual.data(), map.NumMyElements(), 1);
+    Epetra_MultiVector       correction(View, map, last.coarse_correction.data(), map.NumMyElements(), 1);
+    ml_.trilinos_operator().ApplyInverse(residual, correction);
+
+    for (unsigned int l = levels_.size(); l-- > 0;)
+      levels_[l].level->post_smooth(x(l), b(l), levels_[l].coarse_correction.data());
   }
 } // namespace Nodus

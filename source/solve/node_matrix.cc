@@ -111,48 +111,56 @@ namespace Nodus
                           const std::vector<unsigned int> &cell_nodes,
                           const unsigned int               n)
   {
-    map_                       = std::move(map);
-    const unsigned int n_owned = map_->n_owned(), n_cells = cell_nodes.size() / n;
-
-    // the cells of each node, then row by row the nodes of these cells that the row stores
-    std::vector<std::uint32_t> cell_start(map_->size() + 1, 0), cells(cell_nodes.size());
+    const unsigned int         n_nodes = map->size(), n_cells = cell_nodes.size() / n;
+    std::vector<std::uint32_t> cell_start(n_nodes + 1, 0), cells(cell_nodes.size()); // the cells of each node
     for (const unsigned int i : cell_nodes)
       ++cell_start[i + 1];
-    for (unsigned int i = 0; i < map_->size(); ++i)
+    for (unsigned int i = 0; i < n_nodes; ++i)
       cell_start[i + 1] += cell_start[i];
     std::vector<std::uint32_t> next(cell_start);
     for (unsigned int c = 0; c < n_cells; ++c)
       for (unsigned int a = 0; a < n; ++a)
         cells[next[cell_nodes[c * n + a]]++] = c;
+    reinit(std::move(map),
+           [&](const std::uint32_t i, std::vector<std::uint32_t> &columns)
+           {
+             for (std::uint32_t k = cell_start[i]; k < cell_start[i + 1]; ++k)
+               for (unsigned int a = 0; a < n; ++a)
+                 if (const unsigned int j = cell_nodes[cells[k] * n + a]; j > i)
+                   columns.push_back(j);
+           });
+  }
 
-    auto         pattern = std::make_shared<NodePattern>();
-    NodePattern &p       = *pattern;
+  void NodeMatrix::reinit(std::shared_ptr<const NodeMap>                                                 map,
+                          const std::function<void(std::uint32_t, std::vector<std::uint32_t> &columns)> &add_columns)
+  {
+    map_                       = std::move(map);
+    const unsigned int n_owned = map_->n_owned();
+    auto               pattern = std::make_shared<NodePattern>();
+    NodePattern       &p       = *pattern;
     p.start.assign(1, 0);
-    std::vector<std::uint32_t> row, lower_length(map_->size() + 1, 0);
+    std::vector<std::uint32_t> row;
+    p.lower_start.assign(map_->size() + 1, 0);
     for (unsigned int i = 0; i < n_owned; ++i)
     {
       row.assign(1, i);
-      for (std::uint32_t k = cell_start[i]; k < cell_start[i + 1]; ++k)
-        for (unsigned int a = 0; a < n; ++a)
-          if (const unsigned int j = cell_nodes[cells[k] * n + a]; j > i)
-            row.push_back(j);
+      add_columns(i, row);
       std::sort(row.begin(), row.end());
       row.erase(std::unique(row.begin(), row.end()), row.end());
       p.ghosts.push_back(p.start.back() + (std::lower_bound(row.begin(), row.end(), n_owned) - row.begin()));
       p.column.insert(p.column.end(), row.begin(), row.end());
       p.start.push_back(p.column.size());
       for (std::uint32_t k = p.start[i] + 1; k < p.start[i + 1]; ++k)
-        ++lower_length[p.column[k] + 1];
+        ++p.lower_start[p.column[k] + 1];
     }
     p.column.shrink_to_fit();
     if (p.column.size() >= std::numeric_limits<std::uint32_t>::max() / 2)
       throw SolverFailure("too many couplings for one process: use more processes");
 
-    p.lower_start.assign(lower_length.begin(), lower_length.end());
     for (unsigned int i = 0; i < map_->size(); ++i)
       p.lower_start[i + 1] += p.lower_start[i];
     p.lower.resize(p.lower_start.back());
-    next.assign(p.lower_start.begin(), p.lower_start.end());
+    std::vector<std::uint32_t> next(p.lower_start);
     for (std::uint32_t i = 0; i < n_owned; ++i)
       for (std::uint32_t k = p.start[i] + 1; k < p.start[i + 1]; ++k)
         p.lower[next[p.column[k]]++] = {i, k};

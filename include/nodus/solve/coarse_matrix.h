@@ -1,7 +1,7 @@
 #ifndef nodus_solve_coarse_matrix_h
 #define nodus_solve_coarse_matrix_h
 
-#include <nodus/types.h>
+#include <nodus/solve/node_matrix.h>
 
 #include <Epetra_CrsMatrix.h>
 
@@ -45,13 +45,18 @@ namespace Nodus
     std::vector<Block>                             blocks_;
   };
 
-  /// The matrix of @p rows: first the owned aggregates, numbered from @p first, then parts of rows of the aggregates
-  /// @p ghosts of other ranks. Unknowns that nothing couples get a positive diagonal. Collective.
-  std::unique_ptr<Epetra_CrsMatrix> make_coarse_matrix(std::vector<CoarseRow>       rows,
-                                                       DoFIndex                     first,
-                                                       const std::vector<DoFIndex> &ghosts,
-                                                       const Epetra_Map            &map,
-                                                       MPI_Comm                     communicator);
+  /// The matrix of @p rows, two nodes of three unknowns for each aggregate: first the owned aggregates, numbered from
+  /// @p first, then parts of rows of the aggregates @p ghosts of other ranks. Of blocks between two aggregates of the
+  /// rank at hand, those below the diagonal are not read. Unknowns that nothing couples get a positive diagonal.
+  /// Collective.
+  std::unique_ptr<NodeMatrix> make_coarse_matrix(std::vector<CoarseRow>       rows,
+                                                 DoFIndex                     first,
+                                                 DoFIndex                     n_aggregates,
+                                                 const std::vector<DoFIndex> &ghosts,
+                                                 MPI_Comm                     communicator);
+
+  /// For libraries. Collective.
+  std::unique_ptr<Epetra_CrsMatrix> to_epetra(const NodeMatrix &matrix);
 } // namespace Nodus
 
 #endif

@@ -128,6 +128,10 @@ namespace Nodus
 
     /// Couples all nodes of each cell. @param cell_nodes local numbers of @p map, @p n per cell.
     void reinit(std::shared_ptr<const NodeMap> map, const std::vector<unsigned int> &cell_nodes, unsigned int n);
+    /// @param add_columns called as add_columns(i, columns) in the order of the owned nodes: appends to @p columns the
+    /// local nodes j > i that node i is coupled with, in any order, also more than once.
+    void reinit(std::shared_ptr<const NodeMap>                                                 map,
+                const std::function<void(std::uint32_t, std::vector<std::uint32_t> &columns)> &add_columns);
 
     const NodeMap &map() const
     {
