@@ -5,6 +5,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
 
 #include <algorithm>
 #include <limits>
@@ -38,29 +39,26 @@ namespace Nodus
       return rho;
     }
 
-    RigidBodyData rigid_body_data(const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping)
+    std::vector<Point> node_positions(const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping)
     {
-      std::map<DoFIndex, Point> points;
-      dealii::DoFTools::map_dofs_to_support_points(mapping, dof_handler, points);
-      std::map<DoFIndex, std::pair<char, char>> component_and_body;
-      const auto                               &fe = dof_handler.get_fe();
-      std::vector<DoFIndex>                     dofs(fe.n_dofs_per_cell());
+      const auto             &fe    = dof_handler.get_fe();
+      const dealii::IndexSet &owned = dof_handler.locally_owned_dofs();
+      dealii::FEValues<dim>   values(mapping,
+                                   fe,
+                                   dealii::Quadrature<dim>(fe.base_element(0).get_unit_support_points()),
+                                   dealii::update_quadrature_points);
+      std::vector<Point>      positions(owned.n_elements() / dim);
+      std::vector<DoFIndex>   dofs(fe.n_dofs_per_cell());
       for (const auto &cell : dof_handler.active_cell_iterators())
         if (!cell->is_artificial())
         {
+          values.reinit(cell);
           cell->get_dof_indices(dofs);
-          for (unsigned int i = 0; i < dofs.size(); ++i)
-            component_and_body[dofs[i]] = {static_cast<char>(fe.system_to_component_index(i).first),
-                                           static_cast<char>(cell->material_id())};
+          for (unsigned int node = 0; node < values.n_quadrature_points; ++node)
+            if (const DoFIndex i = dofs[fe.component_to_system_index(0, node)]; owned.is_element(i))
+              positions[owned.index_within_set(i) / dim] = values.quadrature_point(node);
         }
-      RigidBodyData data;
-      for (const auto i : dof_handler.locally_owned_dofs())
-      {
-        data.support_points.push_back(points[i]);
-        data.component.push_back(component_and_body[i].first);
-        data.body.push_back(component_and_body[i].second);
-      }
-      return data;
+      return positions;
     }
   } // namespace
 
@@ -189,7 +187,7 @@ namespace Nodus
       summary();
       solid->make_sparsity(system.bulk);
       linear_solver =
-          make_linear_solver(parameters.linear_solver, surfaces->layout(), rigid_body_data(dof_handler, *mapping));
+          make_linear_solver(parameters.linear_solver, surfaces->layout(), node_positions(dof_handler, *mapping));
       linear_solver->set_profile(&profile);
       if (parameters.output.write_vtu)
         vtu = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, *mapping, materials);

@@ -248,6 +248,7 @@ namespace Nodus
   {
     const auto active = [&](const unsigned int site) { return residual.jump[site].norm_square() > 0.; };
 
+    Sum    sum;
     Blocks blocks;
     for (const AveragedJump::Face &face : averaged_.faces())
     {
@@ -273,7 +274,7 @@ namespace Nodus
         add_offset(1, p.master.face, p.master.xi, p.master.eta, point, blocks);
       }
       finish_offsets(face.pair, blocks);
-      write(state, blocks, system);
+      add_to(sum, blocks);
     }
 
     for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
@@ -314,58 +315,54 @@ namespace Nodus
           blocks.gap[row * blocks.stride + column] += coefficient * (jump * d.value);
         }
       }
-      write(state, blocks, system);
+      add_to(sum, blocks);
+    }
+    write(sum, state, system);
+  }
+
+  /// Neighbouring faces and slave nodes couple the same nodes: what they add is brought together first.
+  void GeometryTangent::add_to(Sum &sum, const Blocks &blocks) const
+  {
+    const unsigned int  n    = blocks.nodes.size();
+    const std::uint64_t size = surfaces_.nodes().size();
+    for (unsigned int r = 0; r < n; ++r)
+      for (unsigned int c = 0; c < n; ++c)
+        if (const Matrix3 &value = blocks.force[r * blocks.stride + c]; value != Matrix3())
+          sum.force[blocks.nodes[r] * size + blocks.nodes[c]] += value;
+    for (unsigned int r = 0; r < blocks.slaves.size(); ++r)
+      for (unsigned int c = 0; c < n; ++c)
+        if (const Vector3 &value = blocks.gap[r * blocks.stride + c]; value != Vector3())
+          sum.gap[blocks.slaves[r] * size + blocks.nodes[c]] += value;
+  }
+
+  void GeometryTangent::write(const Sum &sum, const ContactState &state, LinearSystem &system) const
+  {
+    const BlockLayout  &layout = surfaces_.layout();
+    const auto         &nodes  = surfaces_.nodes();
+    const std::uint64_t size   = nodes.size();
+    system.variation.reserve(system.variation.row.size() + dim * dim * sum.force.size() + dim * sum.gap.size());
+    for (const auto &[key, value] : sum.force)
+    {
+      const unsigned int row = key / size, column = key % size;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim && !surfaces_.fixed(row, i); ++j)
+          if (surfaces_.fixed(column, j))
+            system.rhs.block(0)(nodes[row].dofs[i]) -= value[i][j] * state.prescribed[column][j];
+          else
+            system.variation.add(nodes[row].dofs[i], nodes[column].dofs[j], value[i][j]);
+    }
+    for (const auto &[key, value] : sum.gap)
+    {
+      const DoFIndex     multiplier = surfaces_.multiplier(key / size);
+      const unsigned int column     = key % size;
+      for (unsigned int j = 0; j < dim; ++j)
+        if (surfaces_.fixed(column, j))
+          system.rhs.block(1)(multiplier) -= value[j] * state.prescribed[column][j];
+        else if (value[j] != 0.)
+          system.variation.add(layout.lambda(multiplier), nodes[column].dofs[j], value[j]);
     }
     system.rhs.block(0).compress(dealii::VectorOperation::add);
     system.rhs.block(1).compress(dealii::VectorOperation::add);
     system.symmetric = false;
-  }
-
-  void GeometryTangent::write(const ContactState &state, const Blocks &blocks, LinearSystem &system) const
-  {
-    const BlockLayout &layout = surfaces_.layout();
-    const auto        &nodes  = surfaces_.nodes();
-    const auto         add    = [&](const unsigned int row_node,
-                         const unsigned int row_component,
-                         const unsigned int column_node,
-                         const unsigned int column_component,
-                         const double       value)
-    {
-      if (surfaces_.fixed(row_node, row_component))
-        return;
-      const DoFIndex row = nodes[row_node].dofs[row_component];
-      if (surfaces_.fixed(column_node, column_component))
-        system.rhs.block(0)(row) -= value * state.prescribed[column_node][column_component];
-      else
-        system.variation.add(row, nodes[column_node].dofs[column_component], value);
-    };
-    const unsigned int n = blocks.nodes.size();
-    for (unsigned int r = 0; r < n; ++r)
-      for (unsigned int c = 0; c < n; ++c)
-      {
-        const Matrix3 &value = blocks.force[r * blocks.stride + c];
-        if (value == Matrix3())
-          continue;
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int j = 0; j < dim; ++j)
-          {
-            add(blocks.nodes[r], i, blocks.nodes[c], j, value[i][j]);
-          }
-      }
-    for (unsigned int r = 0; r < blocks.slaves.size(); ++r)
-      for (unsigned int c = 0; c < n; ++c)
-      {
-        const Vector3     &value      = blocks.gap[r * blocks.stride + c];
-        const unsigned int node       = blocks.nodes[c];
-        const DoFIndex     multiplier = surfaces_.multiplier(blocks.slaves[r]);
-        for (unsigned int j = 0; j < dim; ++j)
-          if (value[j] != 0.)
-          {
-            if (surfaces_.fixed(node, j))
-              system.rhs.block(1)(multiplier) -= value[j] * state.prescribed[node][j];
-            else
-              system.variation.add(layout.lambda(multiplier), nodes[node].dofs[j], value[j]);
-          }
-      }
   }
 } // namespace Nodus

@@ -15,7 +15,7 @@ namespace Nodus
 
   BlockPreconditioner::BlockPreconditioner(const SaddlePointOperator &system,
                                            const double               augmentation_factor,
-                                           const RigidBodyData       &rigid_body_data)
+                                           const std::vector<Point>  &node_positions)
       : system_(system)
       , multiplier_part_(std::make_unique<Epetra_MultiVector>(system.B().RowMap(), 1))
   {
@@ -24,7 +24,7 @@ namespace Nodus
     make_augmented_matrix();
     // three sweeps pay off against the stiff couplings of the augmentation
     multigrid_ =
-        std::make_unique<Multigrid>(system.bulk(), *augmented_, rigid_body_modes(system.bulk(), rigid_body_data), 3);
+        std::make_unique<Multigrid>(system.bulk(), *augmented_, rigid_body_modes(system.bulk(), node_positions), 3);
   }
 
   void BlockPreconditioner::make_multiplier_blocks(const double augmentation_factor)

@@ -30,7 +30,6 @@ namespace Nodus
           std::fill_n(stiffness_.begin() + 9 * k, 9, 0.F);
 
     start_.assign(nodes_.n_owned() + 1, 0);
-    values_.reserve(correction.size());
     for (auto entry = correction.begin(); entry != correction.end();)
     {
       const DoFIndex node = entry->row / dim;
@@ -52,6 +51,7 @@ namespace Nodus
       rows_.push_back(i);
       entry = last;
     }
+    values_.shrink_to_fit();
     for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
       start_[i + 1] += start_[i];
   }

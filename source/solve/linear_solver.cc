@@ -12,12 +12,12 @@ namespace Nodus
 
   std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverParameters &parameters,
                                                    const BlockLayout            &layout,
-                                                   const RigidBodyData          &rigid_body_data)
+                                                   const std::vector<Point>     &node_positions)
   {
     if (parameters.type == LinearSolverParameters::Type::direct)
       return std::make_unique<DirectSolver>(layout);
     if (parameters.type == LinearSolverParameters::Type::condensed)
-      return std::make_unique<CondensedSolver>(parameters, rigid_body_data);
-    return std::make_unique<BlockSolver>(parameters, rigid_body_data);
+      return std::make_unique<CondensedSolver>(parameters, node_positions);
+    return std::make_unique<BlockSolver>(parameters, node_positions);
   }
 } // namespace Nodus

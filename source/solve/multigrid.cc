@@ -23,18 +23,18 @@ namespace Nodus
     }
   } // namespace
 
-  std::vector<double> rigid_body_modes(const NodeMatrix &K, const RigidBodyData &data)
+  std::vector<double> rigid_body_modes(const NodeMatrix &K, const std::vector<Point> &node_positions)
   {
     const MPI_Comm    comm = K.map().communicator();
     const std::size_t n    = dim * K.map().n_owned();
-    if (dealii::Utilities::MPI::max(data.support_points.size() == n && data.component.size() == n ? 0 : 1, comm) != 0)
-      throw SolverFailure("Multigrid: the rigid-body data does not match the displacements of the system.");
+    if (dealii::Utilities::MPI::max(dim * node_positions.size() == n ? 0 : 1, comm) != 0)
+      throw SolverFailure("Multigrid: the positions of the nodes do not match the displacements of the system.");
 
     Vector3 centre, extent;
     for (unsigned int d = 0; d < dim; ++d)
     {
       double lower = std::numeric_limits<double>::max(), upper = std::numeric_limits<double>::lowest();
-      for (const Point &p : data.support_points)
+      for (const Point &p : node_positions)
       {
         lower = std::min(lower, p[d]);
         upper = std::max(upper, p[d]);
@@ -50,8 +50,8 @@ namespace Nodus
     for (std::size_t i = 0; i < n; ++i)
       if (!K.decoupled(i))
       {
-        const Vector3      x = (data.support_points[i] - Point(centre)) / length;
-        const unsigned int c = data.component[i];
+        const Vector3      x = (node_positions[i / dim] - Point(centre)) / length;
+        const unsigned int c = i % dim;
         modes[c * n + i]     = 1.;
         // rotation about axis a: e_a x x
         modes[(3 + (c + 1) % 3) * n + i] = x[(c + 2) % 3];

@@ -14,7 +14,7 @@ namespace Nodus
     constexpr unsigned int maximum_halvings = 5;
 
     // Forcing terms of Eisenstat & Walker (1996), choice 2.
-    constexpr double largest_forcing = 1e-3;
+    constexpr double largest_forcing = 1e-4;
     constexpr double forcing_factor  = 0.9;
 
     /// @p residual and @p before in units of the tolerance; @p last: forcing term before this one. The last correction

@@ -44,7 +44,7 @@ namespace
         , n(dim * K.map().n_owned())
         , scale(K.largest_diagonal())
         , A(K, taken_out(), springs(problem.layout, scale))
-        , modes(rigid_body_modes(K, problem.rigid_body_data))
+        , modes(rigid_body_modes(K, problem.node_positions))
         , out(std::cout, dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
     {
     }

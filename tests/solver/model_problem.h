@@ -46,9 +46,9 @@ namespace ModelProblem
   class TwoCubes
   {
   public:
-    BlockLayout   layout;
-    LinearSystem  system;
-    RigidBodyData rigid_body_data;
+    BlockLayout        layout;
+    LinearSystem       system;
+    std::vector<Point> node_positions;
 
     explicit TwoCubes(const Options &options)
         : options(options)
@@ -112,11 +112,9 @@ namespace ModelProblem
           constraints.add_line(i);
       constraints.close();
 
-      rigid_body_data.support_points.resize(layout.owned[0].n_elements());
-      rigid_body_data.component.resize(layout.owned[0].n_elements());
-      rigid_body_data.body.resize(layout.owned[0].n_elements());
       for (const auto i : layout.owned[0])
-        rigid_body_data.support_points[layout.owned[0].index_within_set(i)] = Point(rotate(support[i]));
+        if (i % dim == 0)
+          node_positions.push_back(Point(rotate(support[i])));
 
       // The material is isotropic, so a tilted body has the stiffness of the straight one in turned components.
       dealii::Tensor<2, dim> Q;
@@ -152,13 +150,6 @@ namespace ModelProblem
         if (touches_owned(cell, dofs))
         {
           values.reinit(cell);
-          for (unsigned int i = 0; i < n; ++i)
-            if (const unsigned int c = fe.system_to_component_index(i).first; layout.owned[0].is_element(dofs[i]))
-            {
-              const auto k                 = layout.owned[0].index_within_set(dofs[i]);
-              rigid_body_data.component[k] = c;
-              rigid_body_data.body[k]      = cell->material_id();
-            }
           const double E = options.unit * (cell->material_id() == 1 ? options.stiffness_ratio : 1.), nu = .3;
           const double mu = E / (2. * (1. + nu)), lambda = E * nu / ((1. + nu) * (1. - 2. * nu));
           matrix = 0.;
@@ -356,8 +347,7 @@ namespace ModelProblem
       for (const DoFIndex i : layout.owned[0])
         if (!constraints.is_constrained(i))
           system.rhs.block(0)(i) =
-              options.unit * 1e-3 * area *
-              std::sin(1. + rigid_body_data.support_points[layout.owned[0].index_within_set(i)][2]);
+              options.unit * 1e-3 * area * std::sin(1. + node_positions[layout.owned[0].index_within_set(i) / dim][2]);
       system.rhs.compress(dealii::VectorOperation::insert);
     }
 

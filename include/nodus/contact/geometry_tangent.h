@@ -4,6 +4,8 @@
 #include <nodus/contact/contact_assembler.h>
 
 #include <array>
+#include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 namespace Nodus
@@ -75,7 +77,14 @@ namespace Nodus
         unsigned int side, unsigned int face, double xi, double eta, const ProjectedPoint &point, Blocks &blocks) const;
     void finish_offsets(unsigned int pair, Blocks &blocks) const;
     void add_point(const ProjectedPoint &point, const ContactResidual &residual, Blocks &blocks) const;
-    void write(const ContactState &state, const Blocks &blocks, LinearSystem &system) const;
+    /// The same of all nodes: force blocks by row node * number of nodes + column node, gap rows by slave likewise.
+    struct Sum
+    {
+      std::unordered_map<std::uint64_t, Matrix3> force;
+      std::unordered_map<std::uint64_t, Vector3> gap;
+    };
+    void add_to(Sum &sum, const Blocks &blocks) const;
+    void write(const Sum &sum, const ContactState &state, LinearSystem &system) const;
 
     const std::vector<ContactPairParameters>                 &pairs_;
     const ContactSurfaces                                    &surfaces_;

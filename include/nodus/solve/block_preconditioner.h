@@ -27,7 +27,7 @@ namespace Nodus
     /// Keeps a reference to @p system. Collective.
     BlockPreconditioner(const SaddlePointOperator &system,
                         double                     augmentation_factor,
-                        const RigidBodyData       &rigid_body_data);
+                        const std::vector<Point>  &node_positions);
 
     void vmult(BlockVector &dst, const BlockVector &src) const;
 

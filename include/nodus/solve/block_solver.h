@@ -9,13 +9,13 @@ namespace Nodus
   class BlockSolver : public LinearSolver
   {
   public:
-    BlockSolver(const LinearSolverParameters &parameters, const RigidBodyData &rigid_body_data);
+    BlockSolver(const LinearSolverParameters &parameters, const std::vector<Point> &node_positions);
 
     Report solve(const LinearSystem &system, BlockVector &solution, double relative_tolerance = 0.) override;
 
   private:
     const LinearSolverParameters parameters_;
-    const RigidBodyData          rigid_body_data_;
+    const std::vector<Point>     node_positions_;
   };
 } // namespace Nodus
 

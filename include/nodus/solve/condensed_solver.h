@@ -19,7 +19,7 @@ namespace Nodus
   class CondensedSolver : public LinearSolver
   {
   public:
-    CondensedSolver(const LinearSolverParameters &parameters, const RigidBodyData &rigid_body_data);
+    CondensedSolver(const LinearSolverParameters &parameters, const std::vector<Point> &node_positions);
 
     Report solve(const LinearSystem &system, BlockVector &solution, double relative_tolerance = 0.) override;
 
@@ -35,7 +35,7 @@ namespace Nodus
     gmres(const SaddlePointOperator &matrix, Condensation &condensation, double tolerance, BlockVector &x) const;
 
     const LinearSolverParameters     parameters_;
-    const RigidBodyData              rigid_body_data_;
+    const std::vector<Point>         node_positions_;
     std::unique_ptr<CorrectedMatrix> matrix_;
     std::unique_ptr<Multigrid>       multigrid_;
     std::vector<char>                signature_; ///< of the system that the hierarchy was made for

@@ -48,17 +48,11 @@ namespace Nodus
     Profile *profile_ = nullptr;
   };
 
-  /// Coordinates of the degrees of freedom for the rigid-body modes, and the constrained ones (zero in the modes).
-  struct RigidBodyData
-  {
-    std::vector<Point> support_points; ///< of the owned displacement dofs, in ascending order of the dof
-    std::vector<char>  component;      ///< 0, 1, 2 of the same dofs
-    std::vector<char>  body;           ///< index of the body of the same dofs
-  };
-
+  /// @param node_positions of the owned displacement nodes, in the order of their degrees of freedom, for the
+  /// rigid-body modes
   std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverParameters &parameters,
                                                    const BlockLayout            &layout,
-                                                   const RigidBodyData          &rigid_body_data);
+                                                   const std::vector<Point>     &node_positions);
 } // namespace Nodus
 
 #endif

@@ -54,6 +54,12 @@ namespace Nodus
       column.clear();
       value.clear();
     }
+    void reserve(const std::size_t n)
+    {
+      row.reserve(n);
+      column.reserve(n);
+      value.reserve(n);
+    }
     void add(const DoFIndex i, const DoFIndex j, const double v)
     {
       row.push_back(i);

@@ -14,7 +14,7 @@ namespace Nodus
 {
   /// Rigid-body modes of all bodies together at the owned displacements: three translations, three rotations, one after
   /// the other; zero where nothing but the diagonal of @p K couples. Collective.
-  std::vector<double> rigid_body_modes(const NodeMatrix &K, const RigidBodyData &data);
+  std::vector<double> rigid_body_modes(const NodeMatrix &K, const std::vector<Point> &node_positions);
 
   /// Smoothed aggregation multigrid, one V cycle: levels in node blocks down to some thousand unknowns, ML below.
   class Multigrid
