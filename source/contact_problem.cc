@@ -126,7 +126,7 @@ namespace Nodus
     }
   }
 
-  void ContactProblem::Implementation::write(const unsigned int increment, const bool last)
+  void ContactProblem::Implementation::write(const bool last)
   {
     std::vector<Tables::Reaction> table;
     for (const auto &[name, force] : reactions)
@@ -152,8 +152,7 @@ namespace Nodus
     for (unsigned int p = 0; p < surfaces->n_pairs(); ++p)
     {
       std::ostringstream line;
-      line << "  contact pair " << p + 1
-           << (parameters.contact_pairs[p].name.empty() ? "" : " (" + parameters.contact_pairs[p].name + ")") << ": "
+      line << "  contact pair " << p + 1 << in_brackets(parameters.contact_pairs[p].name) << ": "
            << surfaces->n_faces(p, slave_side) << " slave faces on " << surfaces->n_faces(p, master_side)
            << " master faces, mean slave face size " << surfaces->face_size(p);
       console.line(line.str());
@@ -219,7 +218,7 @@ namespace Nodus
       start = path.interval_ends[i];
     }
 
-    for (unsigned int increment = 1; increment <= times.size(); ++increment)
+    for (increment = 1; increment <= times.size(); ++increment)
     {
       const double before = time;
       time                = times[increment - 1];
@@ -233,6 +232,7 @@ namespace Nodus
       {
         roll_back();
         time = before;
+        tables->add_failure();
         if (vtu && increment > 1)
         {
           const auto timer = profile.time(Phase::output);
@@ -242,14 +242,15 @@ namespace Nodus
         std::ostringstream message;
         message << "increment " << increment << " (t = " << times[increment - 1] << "), geometry pass " << pass.geometry
                 << ", threshold pass " << pass.threshold << ", status pass " << pass.status << ": " << failure.what()
-                << ". The last converged state is t = " << before << (increment > 1 ? "" : " (nothing was written)");
+                << ". The last converged state is t = " << before
+                << (increment > 1 ? "" : " (only convergence.csv was written)");
         throw SolverFailure(message.str());
       }
       commit();
       {
         const auto timer = profile.time(Phase::output);
         update_results();
-        write(increment, increment == times.size());
+        write(increment == times.size());
       }
       console.end_increment(counts, resultants);
       if (callback)
@@ -272,40 +273,6 @@ namespace Nodus
   void ContactProblem::profile()
   {
     implementation_->detailed_profile = true;
-  }
-
-  void ContactProblem::validate()
-  {
-    auto &p = *implementation_;
-    p.summary();
-    p.pair_surfaces();
-    for (unsigned int pair = 0; pair < p.surfaces->n_pairs(); ++pair)
-    {
-      unsigned int n = 0, found = 0, closed = 0;
-      double       smallest = std::numeric_limits<double>::max(), largest = -smallest;
-      for (unsigned int k = 0; k < p.pairing.size(); ++k)
-        if (p.surfaces->pair(k) == pair && p.surfaces->has_status(k) && p.surfaces->is_owned(k))
-        {
-          ++n;
-          closed += p.status->contact(k);
-          if (!p.pairing[k].found)
-            continue;
-          ++found;
-          const double gap = -p.contact->distance(p.state, k);
-          smallest         = std::min(smallest, gap);
-          largest          = std::max(largest, gap);
-        }
-      for (unsigned int *count : {&n, &found, &closed})
-        *count = dealii::Utilities::MPI::sum(*count, p.communicator);
-      smallest = dealii::Utilities::MPI::min(smallest, p.communicator);
-      largest  = dealii::Utilities::MPI::max(largest, p.communicator);
-      std::ostringstream text;
-      text << "  contact pair " << pair + 1 << ": " << found << " of " << n
-           << (p.surfaces->has_points(pair) ? " integration points" : " slave nodes") << " find a master point";
-      if (found > 0)
-        text << ", gap " << smallest << " to " << largest << ", " << closed << " start closed";
-      p.console.line(text.str());
-    }
   }
 
   const std::vector<ContactFields> &ContactProblem::contact_fields() const

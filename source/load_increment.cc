@@ -75,6 +75,8 @@ namespace Nodus
                        [&](const unsigned int iteration, const Norms &norms, const unsigned int krylov)
                        {
                          console.newton_iteration(pass, iteration, norms, krylov);
+                         pass.fallbacks = counts.fallbacks;
+                         tables->add(Tables::Iteration{increment, time, pass, iteration, norms, krylov});
                          counts.newton += iteration > 0;
                          counts.krylov += krylov;
                          profile.newton_iterations += iteration > 0;
@@ -91,6 +93,7 @@ namespace Nodus
     if (merged.status)
       return true;
     const Status::Update update = update_statuses();
+    tables->add_status_changes(update.changes);
     return loop.finished(update.changes, first_changed);
   }
 

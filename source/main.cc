@@ -6,6 +6,9 @@
 
 #include <Trilinos_version.h>
 #include <dmumps_c.h>
+#if __has_include(<muParserDef.h>)
+#  include <muParserDef.h>
+#endif
 
 #include <iostream>
 #include <sstream>
@@ -20,9 +23,11 @@ namespace
 
   nodus case.prm [--set "Section/Key=value"]... [--validate | --profile]
 
+  case.prm                   the parameter file; one that ends in .json is read as JSON
   --set "Section/Key=value"  replaces a value of the file, e.g. --set "Contact pair 1/Friction coefficient=0.3"
-  --validate                 reads the case, pairs the surfaces, prints a summary and stops
+  --validate                 reads the case, pairs the surfaces, prints what a run would start from and stops
   --profile                  prints CPU time, calls and memory by phase, and writes them to profile.json in the results folder
+  --explain KEY              prints what all keys mean whose path contains KEY, e.g. --explain "friction"
   --document                 prints the reference of all parameters (Markdown)
   --version                  prints the versions of nodus and of its libraries
   --help                     prints this text
@@ -33,7 +38,8 @@ namespace
     std::string              file;
     std::vector<std::string> overrides;
     bool                     validate = false, profile = false;
-    std::string              print; ///< --document, --version or --help
+    std::string              print;   ///< --document, --explain, --version or --help
+    std::string              explain; ///< the key
   };
 
   CommandLine parse(const std::vector<std::string> &arguments)
@@ -44,6 +50,13 @@ namespace
       const std::string &argument = arguments[i];
       if (argument == "--document" || argument == "--version" || argument == "--help")
         command.print = argument;
+      else if (argument == "--explain")
+      {
+        if (++i == arguments.size())
+          throw Nodus::InputError("--explain needs a key or a part of one after it");
+        command.print   = argument;
+        command.explain = arguments[i];
+      }
       else if (argument == "--validate")
         command.validate = true;
       else if (argument == "--profile")
@@ -77,14 +90,25 @@ namespace
     text += "MUMPS " MUMPS_VERSION "\n";
     text += "p4est " + std::to_string(DEAL_II_P4EST_VERSION_MAJOR) + '.' + std::to_string(DEAL_II_P4EST_VERSION_MINOR) +
             '.' + std::to_string(DEAL_II_P4EST_VERSION_SUBMINOR) + '\n';
+    char library[MPI_MAX_LIBRARY_VERSION_STRING];
+    int  length = 0;
+    MPI_Get_library_version(library, &length);
+    const std::string mpi(library, length);
+    text += "MPI library " + mpi.substr(0, mpi.find_first_of(",\n")) + '\n'; // the first of many particulars
+#if __has_include(<muParserDef.h>)
+    text += "muParser " + mu::ParserVersion + '\n';
+#endif
+    text += "compiler " NODUS_COMPILER ", build type " NODUS_BUILD_TYPE "\n";
     return text;
   }
 
-  std::string answer(const std::string &option)
+  std::string answer(const CommandLine &command)
   {
-    if (option == "--document")
+    if (command.print == "--document")
       return Nodus::Parameters::documentation();
-    return option == "--version" ? versions() : usage;
+    if (command.print == "--explain")
+      return Nodus::Parameters::explain(command.explain);
+    return command.print == "--version" ? versions() : usage;
   }
 
   /// Messages of libraries bring their own line breaks; ours are one line each.
@@ -127,8 +151,9 @@ int main(int argc, char **argv)
     const CommandLine command = parse(std::vector<std::string>(argv + 1, argv + argc));
     if (!command.print.empty())
     {
+      const std::string text = answer(command);
       if (first_rank)
-        std::cout << answer(command.print) << std::flush;
+        std::cout << text << std::flush;
     }
     else
       solve(Nodus::Parameters::read(command.file, command.overrides), command);

@@ -27,6 +27,11 @@ namespace Nodus
     return text.str();
   }
 
+  std::string in_brackets(const std::string &name)
+  {
+    return name.empty() ? "" : " (" + name + ")";
+  }
+
   /// Freezes the geometry: projections, frames, jump operator and surface weights at the current positions.
   void ContactProblem::Implementation::pair_surfaces()
   {

@@ -1,4 +1,5 @@
 #include <nodus/parameter_file.h>
+#include <nodus/suggestion.h>
 #include <nodus/types.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -42,13 +43,23 @@ namespace Nodus
       return section.empty() ? "at the top level" : "in '" + section + "'";
     }
 
+    /// What separates the entries of deal.II's "[List of <...> of length 0...3 (inclusive) separated by <;>]"; 0: no
+    /// list.
+    char separator(const std::string &description)
+    {
+      std::smatch match;
+      if (std::regex_match(description, match, std::regex(".* separated by <(.)>\\]")))
+        return match[1].str()[0];
+      return description.compare(0, 6, "[List ") == 0 ? ',' : '\0';
+    }
+
     /// deal.II's "[Double 0...MAX_DOUBLE (inclusive)]" and the like in words.
     std::string in_words(const std::string &description)
     {
       std::smatch match;
       if (std::regex_match(description, match, std::regex("\\[List of <(.*)> of length (\\d+)\\.\\.\\.(\\d+) .*\\]")))
-        return (match[2] == match[3] ? match[2].str() + " entries" : "a list") + " separated by ',', each " +
-               in_words(match[1]);
+        return (match[2] == match[3] ? match[2].str() + " entries" : "a list") + " separated by '" +
+               separator(description) + "'" + (match[1] == "[Anything]" ? "" : ", each " + in_words(match[1]));
       if (std::regex_match(description, match, std::regex("\\[Selection (.*?) ?\\]")))
         return "one of: " + std::regex_replace(match[1].str(), std::regex("\\|"), ", ");
       if (description == "[Bool]")
@@ -75,50 +86,25 @@ namespace Nodus
     {
       for (const auto &[name, node] : tree)
         if (node.find("pattern_description") != node.not_found())
+        {
+          const auto pattern = node.get<std::string>("pattern_description");
           keys.push_back({section,
                           name,
                           node.get<std::string>("default_value"),
-                          in_words(node.get<std::string>("pattern_description")),
-                          node.get<std::string>("documentation")});
+                          in_words(pattern),
+                          node.get<std::string>("documentation"),
+                          separator(pattern)});
+        }
         else
           collect(node, join(section, name), keys);
     }
-
-    /// Number of letters to change, insert or delete to turn @p a into @p b, blind to upper and lower case.
-    unsigned int edit_distance(const std::string &a, const std::string &b)
-    {
-      std::vector<unsigned int> row(b.size() + 1);
-      for (unsigned int j = 0; j <= b.size(); ++j)
-        row[j] = j;
-      for (unsigned int i = 0; i < a.size(); ++i)
-      {
-        unsigned int diagonal = row[0];
-        row[0]                = i + 1;
-        for (unsigned int j = 0; j < b.size(); ++j)
-        {
-          const unsigned int change = diagonal + (std::tolower(a[i]) != std::tolower(b[j]) ? 1 : 0);
-          diagonal                  = row[j + 1];
-          row[j + 1]                = std::min({change, row[j] + 1, row[j + 1] + 1});
-        }
-      }
-      return row[b.size()];
-    }
-
-    /// "; did you mean 'Friction coefficient'?" or, when nothing is near, the list of what there is.
-    std::string suggestion(const std::string &name, const std::vector<std::string> &candidates)
-    {
-      const auto distance = [&](const std::string &c) { return edit_distance(name, c); };
-      const auto nearest  = std::min_element(candidates.begin(),
-                                            candidates.end(),
-                                            [&](const auto &a, const auto &b) { return distance(a) < distance(b); });
-      if (nearest != candidates.end() && distance(*nearest) <= std::max<std::size_t>(2, name.size() / 3))
-        return "; did you mean '" + *nearest + "'?";
-      std::string list;
-      for (const auto &c : candidates)
-        list += (list.empty() ? "; there are: " : ", ") + c;
-      return list;
-    }
   } // namespace
+
+  std::string DeclaredKey::unit() const
+  {
+    const auto begin = documentation.find('['), end = documentation.find(']', begin);
+    return end == std::string::npos ? "" : documentation.substr(begin + 1, end - begin - 1);
+  }
 
   std::vector<DeclaredKey> declared_keys(const dealii::ParameterHandler &prm)
   {
@@ -140,19 +126,21 @@ namespace Nodus
   ParameterFile::ParameterFile(const std::string &file, const std::vector<std::string> &overrides)
       : file_(file)
   {
-    read();
+    if (std::filesystem::is_directory(file_))
+      throw InputError(file_ + " is a folder; give the name of a .prm or .json file");
+    std::ifstream stream(file_);
+    if (!stream)
+      throw InputError(file_ + ": cannot open the parameter file; check its name and the folder nodus is started in");
+    if (std::filesystem::path(file_).extension() == ".json")
+      read_json(stream);
+    else
+      read_prm(stream);
     for (const auto &text : overrides)
       override_with(text);
   }
 
-  void ParameterFile::read()
+  void ParameterFile::read_prm(std::istream &stream)
   {
-    if (std::filesystem::is_directory(file_))
-      throw InputError(file_ + " is a folder; give the name of a .prm file");
-    std::ifstream stream(file_);
-    if (!stream)
-      throw InputError(file_ + ": cannot open the parameter file; check its name and the folder nodus is started in");
-
     std::string section, line;
     for (unsigned int number = 1; std::getline(stream, line); ++number)
     {
@@ -177,11 +165,8 @@ namespace Nodus
 
     if (word == "subsection" && !rest.empty() && rest.find('/') == std::string::npos)
     {
-      section                     = join(section, rest);
-      const auto [opened, is_new] = sections_.emplace(section, origin);
-      if (!is_new)
-        throw InputError(origin + ": subsection '" + section + "' is already at " + opened->second +
-                         "; merge or renumber one of the two");
+      section = join(section, rest);
+      open_section(section, origin);
     }
     else if (word == "end" && rest.empty())
     {
@@ -197,6 +182,14 @@ namespace Nodus
     else
       throw InputError(origin + ": cannot understand '" + line +
                        "'; write 'subsection <name>', 'end', 'set <key> = <value>' or '# comment'");
+  }
+
+  void ParameterFile::open_section(const std::string &section, const std::string &origin)
+  {
+    const auto [opened, is_new] = sections_.emplace(section, origin);
+    if (!is_new)
+      throw InputError(origin + ": subsection '" + section + "' is already at " + opened->second +
+                       "; merge or renumber one of the two");
   }
 
   void ParameterFile::add(const Entry &entry)
@@ -265,10 +258,16 @@ namespace Nodus
       std::string known;
       for (const auto &name : dealii::Utilities::split_string_list(section, '/'))
       {
-        const auto &names = children[known];
+        auto names = children[known];
         if (std::find(names.begin(), names.end(), name) == names.end())
+        {
+          if (known.empty())
+            for (const char *const first : {"Body 1", "Boundary condition 1", "Contact pair 1"})
+              if (std::find(names.begin(), names.end(), first) == names.end())
+                names.push_back(first); // the file may mean to have one
           throw InputError(origin + ": unknown subsection '" + name + "' " + in_section(known) +
                            suggestion(name, names));
+        }
         known = join(known, name);
       }
     };
@@ -283,19 +282,32 @@ namespace Nodus
                        declared.end(),
                        [&](const DeclaredKey &d) { return d.section == entry.section && d.key == entry.key; });
       if (found == declared.end())
+      {
+        // the right name in the wrong place, unless the place has a name like it
+        std::vector<std::string> elsewhere;
+        if (nearest(entry.key, keys[entry.section]).empty())
+          for (const auto &d : declared)
+            if (!nearest(entry.key, {d.key}).empty() && elsewhere.size() < 3)
+              elsewhere.push_back(d.path());
         throw InputError(entry.origin + ": unknown key '" + entry.key + "' " + in_section(entry.section) +
-                         suggestion(entry.key, keys[entry.section]));
+                         (elsewhere.empty() ? suggestion(entry.key, keys[entry.section]) : did_you_mean(elsewhere)));
+      }
+      if (!entry.list.empty() && found->separator == '\0')
+        refuse(entry.section, entry.key, "is a list; give " + found->allowed);
+      std::string value = entry.value;
+      for (const auto &item : entry.list)
+        value += (value.empty() ? "" : std::string(1, found->separator) + ' ') + item;
 
       const auto path = dealii::Utilities::split_string_list(entry.section, '/');
       for (const auto &name : path)
         prm.enter_subsection(name);
       try
       {
-        prm.set(entry.key, entry.value);
+        prm.set(entry.key, value);
       }
       catch (const dealii::ExceptionBase &)
       {
-        refuse(entry.section, entry.key, "is '" + entry.value + "'; give " + found->allowed);
+        refuse(entry.section, entry.key, "is '" + value + "'; give " + found->allowed);
       }
       for (unsigned int i = 0; i < path.size(); ++i)
         prm.leave_subsection();

@@ -54,13 +54,18 @@ namespace Nodus
                      });
     }
 
+    Patterns::List anything_separated_by(const std::string &separator)
+    {
+      return Patterns::List(Patterns::Anything(), 0, std::numeric_limits<unsigned int>::max(), separator);
+    }
+
     /// Expressions separated by ';' because commas belong to the expressions: if(t<1, t, 1).
     void add_expressions(ParameterHandler         &prm,
                          const std::string        &key,
                          std::vector<std::string> &expressions,
                          const std::string        &documentation)
     {
-      prm.declare_entry(key, "", Patterns::Anything(), documentation);
+      prm.declare_entry(key, "", anything_separated_by(";"), documentation);
       prm.add_action(key,
                      [&expressions](const std::string &text)
                      { expressions = dealii::Utilities::split_string_list(text, ';'); });
@@ -104,7 +109,7 @@ namespace Nodus
                         body.generator_arguments,
                         "Arguments of the generator separated by ':' [length where they are coordinates], e.g. "
                         "3,3,2 : 0,0,0 : 1,1,1 : true.",
-                        Patterns::Anything());
+                        anything_separated_by(":"));
       prm.add_parameter("Scale", body.scale, "Factor on all coordinates, before the rotation [-].", positive);
       prm.add_parameter("Rotation axis", body.rotation_axis, "Axis of the rotation about the origin [-].");
       prm.add_parameter("Rotation angle", body.rotation_angle, "Angle of the rotation [degrees].", any_number);
@@ -137,11 +142,12 @@ namespace Nodus
                      "Components",
                      condition.components,
                      "Directions the condition acts in [-], e.g. x, z; none for a pressure.");
-      add_expressions(prm,
-                      "Value",
-                      condition.value,
-                      "Expressions of x, y, z [length] and the time t [-], separated by ';': one for each component or "
-                      "one for all; see Type for the unit.");
+      add_expressions(
+          prm,
+          "Value",
+          condition.value,
+          "Prescribed value [as Type says]: expressions of x, y, z [length] and the time t [-], separated by "
+          "';', one for each component or one for all.");
     }
 
     void add(ParameterHandler &prm, ContactPairParameters &pair)
@@ -272,6 +278,26 @@ namespace Nodus
     add_subsection(prm, "Linear solver", linear_solver);
     add_subsection(prm, "Load stepping", load_stepping);
     add_subsection(prm, "Output", output);
+  }
+
+  std::string text_of(const MaterialParameters::Law law)
+  {
+    return text_of(law, law_names);
+  }
+
+  std::string text_of(const BoundaryConditionParameters::Type type)
+  {
+    return text_of(type, type_names);
+  }
+
+  std::string text_of(const LoopParameters::Mode mode)
+  {
+    return text_of(mode, mode_names);
+  }
+
+  std::string text_of(const LinearSolverParameters::Type type)
+  {
+    return text_of(type, solver_names);
   }
 
   Parameters Parameters::read(const std::string &file, const std::vector<std::string> &overrides)

@@ -47,6 +47,21 @@ namespace Nodus
 
   } // namespace
 
+  std::string text_of(const ContactPairParameters::Scheme scheme)
+  {
+    return text_of(scheme, scheme_names);
+  }
+
+  std::string text_of(const ContactPairParameters::Integration integration)
+  {
+    return text_of(integration, integration_names);
+  }
+
+  std::string text_of(const ContactPairParameters::Surface surface)
+  {
+    return text_of(surface, surface_names);
+  }
+
   /// @p prefix is "Slave ", "Master " or empty.
   void ParameterKeys::add_region(ParameterHandler  &prm,
                                  const std::string &prefix,

@@ -1,21 +1,32 @@
 #include <nodus/parameter_file.h>
 #include <nodus/parameters.h>
+#include <nodus/suggestion.h>
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <algorithm>
+#include <cctype>
 #include <regex>
 
 namespace Nodus
 {
   namespace
   {
-    /// "Body 1/Material" -> "Body <n> / Material", and what would end a cell of a Markdown table escaped.
+    const std::regex numbered(" 1(?=/|$)");
+
+    /// "Body 1/Material" -> "Body <n> / Material"
     std::string title_of(const std::string &section)
     {
-      const std::string numbered = std::regex_replace(section, std::regex(" 1(?=/|$)"), " `<n>`");
-      return std::regex_replace(numbered, std::regex("/"), " / ");
+      return std::regex_replace(std::regex_replace(section, numbered, " `<n>`"), std::regex("/"), " / ");
     }
 
+    std::string lower_case(std::string text)
+    {
+      std::transform(text.begin(), text.end(), text.begin(), [](const unsigned char c) { return std::tolower(c); });
+      return text;
+    }
+
+    /// What would end a cell of a Markdown table is escaped.
     std::string cell(const std::string &text)
     {
       const std::string escaped = std::regex_replace(text, std::regex("[|<>*]"), "\\$&");
@@ -23,7 +34,7 @@ namespace Nodus
     }
   } // namespace
 
-  std::string Parameters::documentation()
+  std::vector<DeclaredKey> Parameters::reference_keys()
   {
     Parameters parameters;
     parameters.bodies.resize(1);
@@ -31,7 +42,37 @@ namespace Nodus
     parameters.contact_pairs.resize(1);
     dealii::ParameterHandler prm;
     parameters.add_parameters(prm);
+    return declared_keys(prm);
+  }
 
+  std::string Parameters::explain(const std::string &key)
+  {
+    // any number of a body, condition or pair, and blanks around '/' as in the titles of the reference
+    std::string wanted = std::regex_replace(lower_case(key), std::regex("\\s*/\\s*"), "/");
+    wanted             = std::regex_replace(wanted, std::regex("(body|condition|pair) ([0-9]+|<n>)(?=/|$)"), "$1 1");
+
+    const std::vector<DeclaredKey> keys = reference_keys();
+    std::string                    text;
+    for (const auto &k : keys)
+      if (lower_case(k.path()).find(wanted) != std::string::npos)
+        text += (text.empty() ? "" : "\n") + std::regex_replace(k.path(), numbered, " <n>") + "\n  default  " +
+                (k.default_value.empty() ? "(empty)" : k.default_value) + "\n  allowed  " + k.allowed +
+                "\n  unit     " + k.unit() + "\n  meaning  " + k.documentation + '\n';
+    if (text.empty() || wanted.empty())
+    {
+      std::vector<std::string> names;
+      for (const auto &k : keys)
+        if (std::find(names.begin(), names.end(), k.key) == names.end())
+          names.push_back(k.key);
+      const auto near = nearest(key.substr(key.rfind('/') + 1), names);
+      throw InputError("--explain: there is no key like '" + key + "'" +
+                       (near.empty() ? "; nodus --document lists all keys" : did_you_mean(near)));
+    }
+    return text;
+  }
+
+  std::string Parameters::documentation()
+  {
     std::string text    = R"(# Parameters
 
 Written by `nodus --document`; edit the descriptions in source/parameters*.cc.
@@ -40,14 +81,19 @@ A case is a text file. `set Key = value` sets a key, `subsection Name` ... `end`
 starts a comment and a `\` at the end of a line continues it. Bodies, boundary conditions and contact pairs are
 numbered 1, 2, 3, ... without gaps. Unknown keys, keys set twice and values out of range are refused. On the command
 line `--set "Section/Key=value"` replaces a value of the file, for example
-`--set "Body 1/Material/Poisson's ratio=0.4"`.
+`--set "Body 1/Material/Poisson's ratio=0.4"`, and `nodus --explain "friction"` prints what is said here about all keys
+with that word.
 
-Units are yours to choose, but consistently: N, mm and MPa, or N, m and Pa. The time t orders the loads and has no
-unit. Expressions may use x, y, z (reference coordinates), t where a value depends on time, `pi` and the functions of
-muParser and deal.II's FunctionParser.
+A file that ends in .json says the same as nested objects, with arrays for lists if you like:
+`{"Title": "...", "Body 1": {"Name": "block", "Material": {"Young's modulus": 2000}}, "Load stepping": {"Increments":
+[4, 20]}}`.
+
+Units are yours to choose, but consistently: N, mm and MPa, or N, m and Pa. The unit of a key is in square brackets,
+[-] is none. The time t orders the loads and has no unit. Expressions may use x, y, z (reference coordinates), t where
+a value depends on time, `pi` and the functions of muParser and deal.II's FunctionParser.
 )";
     std::string section = "none yet";
-    for (const auto &key : declared_keys(prm))
+    for (const auto &key : reference_keys())
     {
       if (key.section != section)
         text += "\n## " + (key.section.empty() ? "Top level" : title_of(key.section)) +

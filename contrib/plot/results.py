@@ -139,8 +139,8 @@ class Results:
             self._meshes[path] = read_mesh(path)
         return self._meshes[path]
 
-    def table(self, file, key, row, column, t=None):
-        """A number of contact.csv or reactions.csv; units in the header do not belong to the name of the column."""
+    def rows(self, file):
+        """A table as a list of dictionaries of texts; units in the header do not belong to the names of the columns."""
         if file not in self._tables:
             path = os.path.join(self.folder, file)
             if not os.path.exists(path):
@@ -149,7 +149,13 @@ class Results:
                 rows = list(csv.reader(stream))
             header = [re.sub(r" \[.*\]$", "", name) for name in rows[0]]
             self._tables[file] = [dict(zip(header, values)) for values in rows[1:]]
-        rows = [values for values in self._tables[file] if values[key] == row]
+        if not self._tables[file]:
+            raise ResultsError(f"{os.path.join(self.folder, file)} has no rows")
+        return self._tables[file]
+
+    def table(self, file, key, row, column, t=None):
+        """A number of contact.csv or reactions.csv."""
+        rows = [values for values in self.rows(file) if values[key] == row]
         if not rows:
             names = sorted({values[key] for values in self._tables[file]})
             raise ResultsError(f'{file} has no {key} "{row}"; it has ' + ", ".join(f'"{name}"' for name in names))

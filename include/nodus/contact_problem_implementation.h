@@ -61,7 +61,7 @@ namespace Nodus
     std::string              unknown_locus(DoFIndex flat_index) const;
     void                     commit();
     void                     roll_back();
-    void                     write(unsigned int increment, bool last);
+    void                     write(bool last);
     void                     update_results();
     void                     summary();
     std::string              report_profile(bool converged);
@@ -109,8 +109,9 @@ namespace Nodus
     double          prescribed_before = 0.; ///< still to be met at the last assembly, relative
     MergedLoops     merged;                 ///< in this attempt at the increment
 
-    double          time = 0.;
-    IterationCounts pass, counts; ///< where the loops stand, and totals of the increment
+    double          time      = 0.;
+    unsigned int    increment = 0; ///< that is being solved, from 1
+    IterationCounts pass, counts;  ///< where the loops stand, and totals of the increment
 
     std::vector<ContactFields>                   fields;       ///< of this rank's part of the surfaces
     std::vector<ContactFields>                   whole_fields; ///< of all ranks, once somebody asked for them
@@ -123,6 +124,8 @@ namespace Nodus
 
   /// "(x y z)", for messages.
   std::string coordinates(const Point &X);
+  /// " (name)", or nothing without a name.
+  std::string in_brackets(const std::string &name);
 } // namespace Nodus
 
 #endif

@@ -40,17 +40,22 @@ namespace Nodus
     }
 
     template <typename Enum>
+    std::string text_of(const Enum value, const Names<Enum> &names)
+    {
+      for (const auto &[candidate, text] : names)
+        if (candidate == value)
+          return text;
+      return "";
+    }
+
+    template <typename Enum>
     void add_choice(ParameterHandler  &prm,
                     const std::string &key,
                     Enum              &value,
                     const Names<Enum> &names,
                     const std::string &documentation)
     {
-      std::string default_text;
-      for (const auto &[candidate, text] : names)
-        if (candidate == value)
-          default_text = text;
-      prm.declare_entry(key, default_text, Patterns::Selection(selection(names)), documentation);
+      prm.declare_entry(key, text_of(value, names), Patterns::Selection(selection(names)), documentation);
       prm.add_action(key, [&value, &names](const std::string &text) { value = value_of(text, names); });
     }
 

@@ -14,8 +14,9 @@ namespace dealii
 namespace Nodus
 {
   class ParameterFile;
+  struct DeclaredKey;
 
-  /// Every struct below is one subsection of the .prm file; the text of a key is the name of the
+  /// Every struct below is one subsection of the parameter file; the text of a key is the name of the
   /// member with blanks, "Young's modulus" and the like excepted. Keys are bound to members in
   /// source/parameters.cc and checked in source/parameters_check.cc; values here are the defaults
   /// that `nodus --document` prints.
@@ -196,7 +197,7 @@ namespace Nodus
 
   struct Parameters
   {
-    std::string                              file; ///< the .prm file, for messages
+    std::string                              file; ///< the .prm or .json file, for messages
     std::string                              title;
     unsigned int                             degree = 1; ///< of the displacement, 1 or 2
     std::vector<BodyParameters>              bodies;
@@ -216,13 +217,29 @@ namespace Nodus
     /// The reference of all parameters in Markdown (`nodus --document`).
     static std::string documentation();
 
+    /// Section, default, allowed values, unit and meaning of every key whose path ("Contact pair 1/Scheme") contains
+    /// @p key, in upper or lower case (`nodus --explain`). @throws InputError, with the nearest keys, without any.
+    static std::string explain(const std::string &key);
+
   private:
+    /// One body, one boundary condition and one contact pair, for the reference.
+    static std::vector<DeclaredKey> reference_keys();
+
     /// Binds every key to its member; the numbers of bodies, conditions and pairs are already set.
     void add_parameters(dealii::ParameterHandler &prm);
 
     /// Everything that can be seen without a mesh. @throws InputError
     void check(const ParameterFile &file) const;
   };
+
+  /// Choices as they are written in the parameter file.
+  std::string text_of(MaterialParameters::Law law);
+  std::string text_of(BoundaryConditionParameters::Type type);
+  std::string text_of(ContactPairParameters::Scheme scheme);
+  std::string text_of(ContactPairParameters::Integration integration);
+  std::string text_of(ContactPairParameters::Surface surface);
+  std::string text_of(LoopParameters::Mode mode);
+  std::string text_of(LinearSolverParameters::Type type);
 } // namespace Nodus
 
 #endif

@@ -24,6 +24,9 @@ namespace Nodus
 
     constexpr auto reaction_header = "increment,time,condition,force x [force],force y [force],force z [force]\n";
 
+    constexpr auto iteration_header = "increment,time,attempt,geometry pass,threshold pass,status pass,iteration,"
+                                      "force residual,contact residual,Krylov iterations,statuses changed\n";
+
     /// Names come from the user and may hold commas: quoted, inner quotes doubled (RFC 4180).
     std::string quoted(const std::string &name)
     {
@@ -50,8 +53,10 @@ namespace Nodus
   Tables::Tables(const std::string &folder, MPI_Comm communicator)
       : folder_(folder)
       , communicator_(communicator)
+      , writes_(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
       , contact_rows_(contact_header)
       , reaction_rows_(reaction_header)
+      , iteration_rows_(iteration_header)
   {
     make_results_folder(folder, communicator);
   }
@@ -63,7 +68,7 @@ namespace Nodus
                    const IterationCounts                &counts)
   {
     std::string problem;
-    if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
+    if (writes_)
     {
       auto contact_rows = row();
       for (const auto &pair : contact)
@@ -90,15 +95,55 @@ namespace Nodus
       }
       reaction_rows_ += reaction_rows.str();
 
+      finish_iterations();
       for (const auto &[name, rows] : {std::pair<const char *, const std::string *>{"contact.csv", &contact_rows_},
-                                       {"reactions.csv", &reaction_rows_}})
+                                       {"reactions.csv", &reaction_rows_},
+                                       {"convergence.csv", &iteration_rows_}})
         if (problem.empty())
-        {
-          CompleteFile file(folder_, name);
-          file.stream() << *rows;
-          problem = file.finish();
-        }
+          problem = write(name, *rows);
     }
     throw_on_every_rank(problem, communicator_);
+  }
+
+  void Tables::add(const Iteration &iteration)
+  {
+    if (writes_)
+      iterations_.push_back(iteration);
+  }
+
+  void Tables::add_status_changes(const unsigned int n)
+  {
+    if (writes_)
+      iterations_.back().norms.changes += n;
+  }
+
+  void Tables::add_failure()
+  {
+    std::string problem;
+    if (writes_)
+    {
+      finish_iterations();
+      problem = write("convergence.csv", iteration_rows_);
+    }
+    throw_on_every_rank(problem, communicator_);
+  }
+
+  void Tables::finish_iterations()
+  {
+    auto rows = row();
+    for (const Iteration &i : iterations_)
+      rows << i.increment << ',' << i.t << ',' << i.pass.fallbacks + 1 << ',' << i.pass.geometry << ','
+           << i.pass.threshold << ',' << i.pass.status << ',' << i.iteration << ',' << i.norms.force << ','
+           << i.norms.contact << ',' << i.krylov << ',' << i.norms.changes << '\n';
+    iteration_rows_ += rows.str();
+    iterations_.clear();
+  }
+
+  /// @returns what went wrong
+  std::string Tables::write(const std::string &name, const std::string &rows) const
+  {
+    CompleteFile file(folder_, name);
+    file.stream() << rows;
+    return file.finish();
   }
 } // namespace Nodus

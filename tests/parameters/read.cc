@@ -1,10 +1,13 @@
-// Every key of the .prm file reaches its member, "--set" wins over the file, and every_key.prm forgets no key.
+// Every key of the parameter file reaches its member, "--set" wins over the file, every_key.prm forgets no key, JSON
+// says the same, and every key has a unit.
 
 #include <nodus/parameter_file.h>
 #include <nodus/parameters.h>
 
 #include <fstream>
 #include <iostream>
+#include <regex>
+#include <set>
 #include <sstream>
 
 using namespace Nodus;
@@ -117,36 +120,74 @@ namespace
   }
 } // namespace
 
+namespace
+{
+  void print(const Parameters &parameters)
+  {
+    print("title", parameters.title);
+    print("degree", parameters.degree);
+    for (const auto &body : parameters.bodies)
+      print(body);
+    for (const auto &condition : parameters.boundary_conditions)
+      print(condition);
+    for (const auto &pair : parameters.contact_pairs)
+      print(pair);
+    print("geometry loop", parameters.geometry_loop);
+    print("threshold loop", parameters.threshold_loop);
+    print("status loop", parameters.status_loop);
+    print("\nmaximum iterations", parameters.newton.maximum_iterations);
+    print("force tolerance", parameters.newton.force_tolerance);
+    print("contact tolerance", parameters.newton.contact_tolerance);
+    print("line search", parameters.newton.line_search);
+    print_choice("\nlinear solver", parameters.linear_solver.type);
+    print("tolerance", parameters.linear_solver.tolerance);
+    print("maximum iterations", parameters.linear_solver.maximum_iterations);
+    print("augmentation factor", parameters.linear_solver.augmentation_factor);
+    print("\ninterval ends", parameters.load_stepping.interval_ends);
+    print("increments", parameters.load_stepping.increments);
+    print("\nresults folder", parameters.output.results_folder);
+    print("Write VTU", parameters.output.write_vtu);
+    print("VTU interval", parameters.output.vtu_interval);
+  }
+
+  std::string everything(const std::string &file)
+  {
+    std::ostringstream    text;
+    std::streambuf *const screen = std::cout.rdbuf(text.rdbuf());
+    print(Parameters::read(file, {"Newton/Force tolerance=0.25", "Body 2/Material/Young's modulus = 3"}));
+    std::cout.rdbuf(screen);
+    return text.str();
+  }
+
+  /// Keys whose description does not name a unit in square brackets.
+  unsigned int count_without_unit()
+  {
+    const std::regex   unit("-|degrees|face sizes|time|as Type says|length where they are coordinates|"
+                            "(length|pressure|force|area|volume|mass|stress)([/ ](length|pressure|area|volume|time))?");
+    std::istringstream reference(Parameters::documentation());
+    unsigned int       without = 0;
+    std::smatch        found;
+    for (std::string row; std::getline(reference, row);)
+      if (row.compare(0, 2, "| ") == 0 && row.compare(0, 5, "| Key") != 0)
+      {
+        const std::string meaning = row.substr(row.rfind('|', row.size() - 2) + 1);
+        if (!std::regex_search(meaning, found, std::regex("\\[([^\\]]*)\\]")) ||
+            !std::regex_match(found[1].str(), unit))
+        {
+          ++without;
+          std::cout << "without unit: " << row << '\n';
+        }
+      }
+    return without;
+  }
+} // namespace
+
 int main()
 {
   const std::string file = SOURCE_DIR "/every_key.prm";
-  const Parameters  parameters =
-      Parameters::read(file, {"Newton/Force tolerance=0.25", "Body 2/Material/Young's modulus = 3"});
-
-  print("title", parameters.title);
-  print("degree", parameters.degree);
-  for (const auto &body : parameters.bodies)
-    print(body);
-  for (const auto &condition : parameters.boundary_conditions)
-    print(condition);
-  for (const auto &pair : parameters.contact_pairs)
-    print(pair);
-  print("geometry loop", parameters.geometry_loop);
-  print("threshold loop", parameters.threshold_loop);
-  print("status loop", parameters.status_loop);
-  print("\nmaximum iterations", parameters.newton.maximum_iterations);
-  print("force tolerance", parameters.newton.force_tolerance);
-  print("contact tolerance", parameters.newton.contact_tolerance);
-  print("line search", parameters.newton.line_search);
-  print_choice("\nlinear solver", parameters.linear_solver.type);
-  print("tolerance", parameters.linear_solver.tolerance);
-  print("maximum iterations", parameters.linear_solver.maximum_iterations);
-  print("augmentation factor", parameters.linear_solver.augmentation_factor);
-  print("\ninterval ends", parameters.load_stepping.interval_ends);
-  print("increments", parameters.load_stepping.increments);
-  print("\nresults folder", parameters.output.results_folder);
-  print("Write VTU", parameters.output.write_vtu);
-  print("VTU interval", parameters.output.vtu_interval);
-
+  const std::string text = everything(file);
+  std::cout << text;
   print("\nkeys that every_key.prm forgets", count_forgotten(file));
+  print("every_key.json says the same", text == everything(SOURCE_DIR "/every_key.json"));
+  print("keys without a unit", count_without_unit());
 }

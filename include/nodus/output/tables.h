@@ -2,6 +2,7 @@
 #define nodus_output_tables_h
 
 #include <nodus/output/contact_fields.h>
+#include <nodus/solve/newton.h>
 #include <nodus/types.h>
 
 #include <mpi.h>
@@ -11,8 +12,9 @@
 
 namespace Nodus
 {
-  /// contact.csv (one row per increment and pair) and reactions.csv (one row per increment and displacement condition),
-  /// rewritten as a whole after each increment (temporary name, then rename) by rank 0.
+  /// contact.csv (one row per increment and pair), reactions.csv (one row per increment and displacement condition) and
+  /// convergence.csv (one row per Newton iteration), rewritten as a whole after each increment (temporary name, then
+  /// rename) by rank 0.
   class Tables
   {
   public:
@@ -32,10 +34,32 @@ namespace Nodus
              const std::vector<Reaction>          &reactions,
              const IterationCounts                &counts);
 
+    /// One iterate of Newton's method, kept until the next add() or add_failure().
+    struct Iteration
+    {
+      unsigned int         increment;
+      double               t;
+      IterationCounts      pass;      ///< numbers of the geometry, threshold and status pass; fallbacks so far
+      unsigned int         iteration; ///< 0: before the first correction
+      NewtonProblem::Norms norms;
+      unsigned int         krylov; ///< iterations of the correction that led here
+    };
+    void add(const Iteration &iteration);
+    /// Statuses that the status loop changed after the last iterate.
+    void add_status_changes(unsigned int n);
+
+    /// Writes the iterations of an increment that did not converge. Collective. @throws InputError as the constructor.
+    void add_failure();
+
   private:
-    std::string folder_;
-    MPI_Comm    communicator_;
-    std::string contact_rows_, reaction_rows_;
+    std::string write(const std::string &name, const std::string &rows) const;
+    void        finish_iterations();
+
+    std::string            folder_;
+    MPI_Comm               communicator_;
+    bool                   writes_; ///< this rank
+    std::vector<Iteration> iterations_;
+    std::string            contact_rows_, reaction_rows_, iteration_rows_;
   };
 } // namespace Nodus
 
