@@ -12,6 +12,8 @@ namespace Nodus
     using Column3 = Eigen::Vector3d;
     using Rows23  = Eigen::Matrix<double, 2, 3>;
 
+    constexpr double on_the_sphere = 1e-7; ///< see direction()
+
     Column3 eigen(const Vector3 &v)
     {
       return {v[0], v[1], v[2]};
@@ -38,11 +40,13 @@ namespace Nodus
     };
 
     /// pi(w) = w/|w| and its derivative K_B (eq. 48). Inside the unit ball a slip node contradicts its status; there
-    /// the projection pi(w) = w takes over (K_B = I, the stick rows), because forced slip may have no solution.
+    /// the projection pi(w) = w takes over (K_B = I, the stick rows), because forced slip may have no solution. A node
+    /// that goes on slipping starts the increment with |w| = 1 up to round-off and the tolerance of Newton: on the
+    /// sphere.
     void direction(const Column3 &w, Column3 &pi, Matrix3 &K_B)
     {
       const double norm = w.norm();
-      if (norm < 1.)
+      if (norm < 1. - on_the_sphere)
       {
         pi  = w;
         K_B = Matrix3::Identity();
