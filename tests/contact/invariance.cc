@@ -56,7 +56,7 @@ namespace
     const auto   top = region(2, {z_plus});
     Parameters   p;
     p.bodies = {box("lower", "5,4,2", {0, 0, 0}, {5 * s, 4 * s, 2 * s}, E, 0.3),
-                box("upper", "3,3,2", {0.7 * s, 0.5 * s, 2 * s}, {3.7 * s, 3.4 * s, 4 * s}, E, 0.3)};
+                box("upper", "3,3,2", {0.7 * s, 0.6 * s, 2 * s}, {3.7 * s, 3.4 * s, 4 * s}, E, 0.3)};
     for (auto &body : p.bodies)
     {
       body.material.law = MaterialParameters::Law::neo_hookean;
