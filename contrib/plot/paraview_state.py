@@ -48,6 +48,8 @@ def show(reader, view, field, title, preset, edges):
     bar = GetScalarBar(colours, view)
     bar.Title, bar.ComponentTitle = title, ""
     bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
+    bar.TitleFontSize = bar.LabelFontSize = 12
+    bar.Orientation, bar.WindowLocation, bar.ScalarBarLength = "Horizontal", "Lower Center", 0.4
     display.SetScalarBarVisibility(view, True)
     return display
 
@@ -65,6 +67,7 @@ def label(view, text):
     display = Show(Text(Text=text), view)
     display.WindowLocation = "Upper Center"
     display.Color = [0.1, 0.1, 0.1]
+    display.FontSize = 12
 
 
 def main():
@@ -93,9 +96,10 @@ def main():
     if with_contact:
         SetActiveView(right)
         show(contact, right, "CPRESS", "contact pressure (CPRESS)", "Inferno (matplotlib)", True)
-        label(right, "slave surface, from the side of the master")
+        label(right, "slave surface, seen from below")
     for view in views:
         view.ResetCamera(False)
+        view.CameraParallelProjection = 1
         Render(view)
     if len(sys.argv) > 2:
         SaveScreenshot(sys.argv[2], layout, ImageResolution=[1400, 700])
