@@ -107,8 +107,10 @@ namespace Nodus
                         Patterns::Anything());
       prm.add_parameter("Generator arguments",
                         body.generator_arguments,
-                        "Arguments of the generator separated by ':' [length where they are coordinates], e.g. "
-                        "3,3,2 : 0,0,0 : 1,1,1 : true.",
+                        "All arguments of the generator but the mesh, separated by ':' [length where they are "
+                        "coordinates], e.g. 3,3,2 : 0,0,0 : 1,1,1 : true for subdivided_hyper_rectangle: cells, two "
+                        "corners, colorize. With colorize the sides x-, x+, y-, y+, z-, z+ of a box have the boundary "
+                        "ids 0 to 5, without it all have 0.",
                         anything_separated_by(":"));
       prm.add_parameter("Scale", body.scale, "Factor on all coordinates, before the rotation [-].", positive);
       prm.add_parameter("Rotation axis", body.rotation_axis, "Axis of the rotation about the origin [-].");

@@ -84,7 +84,7 @@ namespace Nodus
   {
     const std::string where = "It is asked at the centres of the faces.";
     prm.add_parameter("Name", pair.name, "Name in tables and messages [-]; empty: pair <n>.", Patterns::Anything());
-    add_region(prm, "Slave ", pair.slave, " that carries the contact pressures", where);
+    add_region(prm, "Slave ", pair.slave, " that carries the contact pressures, better the softer or finer one", where);
     add_region(prm, "Master ", pair.master, " that the slave nodes are projected onto", where);
     add_choice(prm,
                "Scheme",

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <regex>
 #include <sstream>
 #include <tuple>
 
@@ -121,10 +122,16 @@ namespace Nodus
       {
         std::ostringstream reason;
         error.print_info(reason);
+        std::string text = reason.str();
+        std::smatch tuple; // deal.II answers wrong arguments with its pattern for them
+        if (std::regex_search(text, tuple, std::regex("Tuple of <(\\d+)> elements")))
+          throw InputError(call + " failed; this generator takes " + tuple[1].str() +
+                           " arguments separated by ':', all those of deal.II's function but the mesh, e.g. "
+                           "subdivided_hyper_rectangle 3,3,2 : 0,0,0 : 1,1,1 : true");
         throw InputError(call +
                          " failed; use the name and the arguments, separated by ':', of a function of "
                          "deal.II's GridGenerator for three dimensions. deal.II says: " +
-                         reason.str());
+                         text);
       }
       if (!mesh->all_reference_cells_are_hyper_cube())
         throw InputError(call + " makes cells that are no hexahedra; use another generator");

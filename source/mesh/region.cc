@@ -45,7 +45,8 @@ namespace Nodus
         throw InputError(
             context + ": no face of " +
             (body_ == 0 ? "any body" : "body " + std::to_string(body_) + " (" + bodies.name(body_ - 1) + ")") +
-            " has the boundary id " + std::to_string(id) + "; ids present: " + list.str());
+            " has the boundary id " + std::to_string(id) + "; ids present: " + list.str() +
+            (present.size() == 1 ? " (a generator numbers the sides when its last argument, colorize, is true)" : ""));
       }
 
     if (parameters.where.find_first_not_of(" \t") != std::string::npos)
