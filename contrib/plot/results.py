@@ -249,7 +249,7 @@ class Case:
             return
         with open(path, encoding="utf-8") as stream:
             text = stream.read()
-        title = re.search(r"^set Title\s*=\s*(.*?)\s*$", text, re.M)
+        title = re.search(r"^set Title\s*=\s*(.*?)\s*$", text, re.M) or re.search(r'"Title"\s*:\s*"([^"]*)"', text)
         self.title = title.group(1) if title else None
         for kind, content in re.findall(r"^#\s*(Check|Plot):\s*(.*?)\s*$", text, re.M):
             self.add(kind, content)

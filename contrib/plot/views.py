@@ -23,6 +23,10 @@ def window_around(projected, margin, narrowest=0.35):
     return low[0], high[0], low[1], high[1]
 
 
+def is_flat(window):
+    return window[3] - window[2] < 0.5 * (window[1] - window[0])
+
+
 def picture(axis, points, faces, values, axes, window, function, edges):
     pixels = np.array([window[1] - window[0], window[3] - window[2]])
     pixels = (PANEL_PIXELS * pixels / pixels.max()).round().astype(int)
@@ -35,7 +39,8 @@ def picture(axis, points, faces, values, axes, window, function, edges):
 def show(figure, axis, points, faces, values, axes, window, colour_map, label, edges):
     function, scale = colour_map
     picture(axis, points, faces, values, axes, window, function, edges)
-    figure.colorbar(scale, ax=axis, label=label, fraction=0.046, pad=0.03)
+    place = {"location": "bottom", "fraction": 0.07} if is_flat(window) else {"fraction": 0.046}
+    figure.colorbar(scale, ax=axis, label=label, pad=0.03, **place)
 
 
 def show_statuses(axis, surface, faces, axes, window, palette):
