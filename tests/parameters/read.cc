@@ -188,6 +188,8 @@ int main()
   const std::string text = everything(file);
   std::cout << text;
   print("\nkeys that every_key.prm forgets", count_forgotten(file));
-  print("every_key.json says the same", text == everything(SOURCE_DIR "/every_key.json"));
+  const auto without_blanks = [](const std::string &t) { return std::regex_replace(t, std::regex(" "), ""); };
+  print("every_key.json says the same",
+        without_blanks(text) == without_blanks(everything(SOURCE_DIR "/every_key.json")));
   print("keys without a unit", count_without_unit());
 }
