@@ -183,6 +183,12 @@ namespace Nodus
                         "Gap and slip relative to the displacement of the step, friction law absolute [-].",
                         positive);
       prm.add_parameter("Line search", newton.line_search, "Shorten a correction that increases the residual [-].");
+      prm.add_parameter("Largest forcing term",
+                        newton.largest_forcing_term,
+                        "Relative accuracy of corrections by an iterative linear solver far from the solution; near it "
+                        "they become as accurate as Newton's method can use. With 0 all have the tolerance of the "
+                        "linear solver [-].",
+                        Patterns::Double(0., 0.1));
     }
 
     void add(ParameterHandler &prm, LinearSolverParameters &solver)

@@ -13,17 +13,16 @@ namespace Nodus
   {
     constexpr unsigned int maximum_halvings = 5;
 
-    // Forcing terms of Eisenstat & Walker (1996), choice 2.
-    constexpr double largest_forcing = 1e-4;
-    constexpr double forcing_factor  = 0.9;
+    constexpr double forcing_factor = 0.9;
 
-    /// @p residual and @p before in units of the tolerance; @p last: forcing term before this one. The last correction
-    /// need not overshoot the tolerance by more than a digit, and terms fall no faster than Newton converges.
-    double forcing_term(const double residual, const double before, const double last)
+    /// Forcing terms of Eisenstat & Walker (1996), choice 2. @p residual and @p before in units of the tolerance; @p
+    /// last: forcing term before this one. The last correction need not overshoot the tolerance by more than a digit,
+    /// and terms fall no faster than Newton converges.
+    double forcing_term(const double residual, const double before, const double last, const double largest)
     {
       const double ratio = residual / before;
       const double term  = std::max(forcing_factor * ratio * ratio, forcing_factor * last * last);
-      return std::min(largest_forcing, std::max(term, 0.1 / residual));
+      return std::min(largest, std::max(term, 0.1 / residual));
     }
 
     [[noreturn]] void fail(const std::string &reason, const NewtonProblem::Norms &norms)
@@ -58,7 +57,7 @@ namespace Nodus
     BlockVector          correction;
     NewtonProblem::Norms norms = problem.assemble();
     log(0, norms, 0);
-    double       before = 0., forcing = largest_forcing, best = std::numeric_limits<double>::max();
+    double       before = 0., forcing = parameters_.largest_forcing_term, best = std::numeric_limits<double>::max();
     unsigned int fewest = std::numeric_limits<unsigned int>::max(), idle = 0;
     while (!converged(norms))
     {
@@ -74,8 +73,9 @@ namespace Nodus
       if (patience_ > 0 && idle >= patience_)
         fail("stalled: no progress in " + std::to_string(idle) + " iterations", norms);
 
-      forcing = report.iterations == 0 ? largest_forcing : forcing_term(now, before, forcing);
-      before  = now;
+      if (report.iterations > 0)
+        forcing = forcing_term(now, before, forcing, parameters_.largest_forcing_term);
+      before                               = now;
       const unsigned int krylov_iterations = problem.solve(correction, forcing);
       report.krylov_iterations += krylov_iterations;
       ++report.iterations;

@@ -139,6 +139,7 @@ namespace
     print("force tolerance", parameters.newton.force_tolerance);
     print("contact tolerance", parameters.newton.contact_tolerance);
     print("line search", parameters.newton.line_search);
+    print("largest forcing term", parameters.newton.largest_forcing_term);
     print_choice("\nlinear solver", parameters.linear_solver.type);
     print("tolerance", parameters.linear_solver.tolerance);
     print("maximum iterations", parameters.linear_solver.maximum_iterations);

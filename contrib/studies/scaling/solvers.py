@@ -17,6 +17,7 @@ TIGHT = {
     "Newton/Force tolerance": "1e-9",
     "Newton/Contact tolerance": "1e-10",
     "Newton/Maximum iterations": "40",
+    "Newton/Largest forcing term": "0",
     "Linear solver/Tolerance": "1e-13",
     "Output/Write VTU": "false",
 }
