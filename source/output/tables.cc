@@ -50,8 +50,7 @@ namespace Nodus
   Tables::Tables(const std::string &folder, MPI_Comm communicator)
       : folder_(folder)
       , communicator_(communicator)
-      , contact_rows_(contact_header)
-      , reaction_rows_(reaction_header)
+      , rows_{contact_header, reaction_header}
   {
     make_results_folder(folder, communicator);
   }
@@ -62,43 +61,51 @@ namespace Nodus
                    const std::vector<Reaction>          &reactions,
                    const IterationCounts                &counts)
   {
+    auto contact_rows = row();
+    for (const auto &pair : contact)
+    {
+      contact_rows << increment << ',' << t << ',' << quoted(pair.name);
+      for (const auto &v : {pair.slave_force, pair.slave_moment, pair.master_force, pair.master_moment})
+        print(contact_rows, v);
+      contact_rows << ',' << pair.contact_area << ',' << pair.maximum_pressure << ',' << pair.open << ',' << pair.slip
+                   << ',' << pair.stick << ',' << pair.unpaired << ',' << counts.geometry << ',' << counts.threshold
+                   << ',' << counts.status << ',' << counts.newton << ',' << counts.krylov << ','
+                   << pair.status_changes;
+      for (const unsigned int n : pair.contradictions)
+        contact_rows << ',' << n;
+      contact_rows << ',' << pair.longest_cycle << ',' << counts.fallbacks << '\n';
+    }
+    rows_.contact += contact_rows.str();
+
+    auto reaction_rows = row();
+    for (const auto &reaction : reactions)
+    {
+      reaction_rows << increment << ',' << t << ',' << quoted(reaction.name);
+      print(reaction_rows, reaction.force);
+      reaction_rows << '\n';
+    }
+    rows_.reactions += reaction_rows.str();
+    write();
+  }
+
+  void Tables::continue_from(const Rows &rows)
+  {
+    rows_ = rows;
+    write();
+  }
+
+  void Tables::write() const
+  {
     std::string problem;
     if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
-    {
-      auto contact_rows = row();
-      for (const auto &pair : contact)
-      {
-        contact_rows << increment << ',' << t << ',' << quoted(pair.name);
-        for (const auto &v : {pair.slave_force, pair.slave_moment, pair.master_force, pair.master_moment})
-          print(contact_rows, v);
-        contact_rows << ',' << pair.contact_area << ',' << pair.maximum_pressure << ',' << pair.open << ',' << pair.slip
-                     << ',' << pair.stick << ',' << pair.unpaired << ',' << counts.geometry << ',' << counts.threshold
-                     << ',' << counts.status << ',' << counts.newton << ',' << counts.krylov << ','
-                     << pair.status_changes;
-        for (const unsigned int n : pair.contradictions)
-          contact_rows << ',' << n;
-        contact_rows << ',' << pair.longest_cycle << ',' << counts.fallbacks << '\n';
-      }
-      contact_rows_ += contact_rows.str();
-
-      auto reaction_rows = row();
-      for (const auto &reaction : reactions)
-      {
-        reaction_rows << increment << ',' << t << ',' << quoted(reaction.name);
-        print(reaction_rows, reaction.force);
-        reaction_rows << '\n';
-      }
-      reaction_rows_ += reaction_rows.str();
-
-      for (const auto &[name, rows] : {std::pair<const char *, const std::string *>{"contact.csv", &contact_rows_},
-                                       {"reactions.csv", &reaction_rows_}})
+      for (const auto &[name, rows] : {std::pair<const char *, const std::string *>{"contact.csv", &rows_.contact},
+                                       {"reactions.csv", &rows_.reactions}})
         if (problem.empty())
         {
           CompleteFile file(folder_, name);
           file.stream() << *rows;
           problem = file.finish();
         }
-    }
     throw_on_every_rank(problem, communicator_);
   }
 } // namespace Nodus

@@ -32,10 +32,23 @@ namespace Nodus
              const std::vector<Reaction>          &reactions,
              const IterationCounts                &counts);
 
+    struct Rows
+    {
+      std::string contact, reactions; ///< with the headers
+    };
+    const Rows &rows() const
+    {
+      return rows_;
+    }
+    /// Writes the tables as they were when they had these @p rows. Collective. @throws InputError as the constructor.
+    void continue_from(const Rows &rows);
+
   private:
+    void write() const;
+
     std::string folder_;
     MPI_Comm    communicator_;
-    std::string contact_rows_, reaction_rows_;
+    Rows        rows_;
   };
 } // namespace Nodus
 
