@@ -111,7 +111,7 @@ def main():
         damaged = damaged_files(parts) if os.path.isdir(parts) else []
         bad += len(damaged)
         continued = [line.split()[3].rstrip(",") for line in log.splitlines() if line.startswith("Continues after increment")]
-        print(f"| {kill + 1} | {what.name} | {wait:.1f} | {code} | {continued[0] if continued else "–"} | "
+        print(f"| {kill + 1} | {what.name} | {wait:.1f} | {code} | {continued[0] if continued else '-'} | "
               f"{', '.join(damaged) or 'none'} |", flush=True)
     run = start(options.case, parts, options.ranks, True)
     log, _ = run.communicate()
