@@ -1,6 +1,7 @@
 #include <nodus/contact/tractions.h>
 #include <nodus/contact_problem_implementation.h>
 #include <nodus/output/complete_file.h>
+#include <nodus/signals.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -71,13 +72,15 @@ namespace Nodus
       , fe(dealii::FE_Q<dim>(parameters.degree), dim)
       , dof_handler(bodies.triangulation())
       , materials(make_materials(parameters.bodies))
+      , path(parameters.load_stepping)
+      , checkpoints(parameters.output.results_folder, comm)
   {
     if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 && !parameters.contact_pairs.empty())
       balance_contact(parameters.contact_pairs, *mapping, bodies);
     dof_handler.distribute_dofs(fe);
     dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
     boundary_conditions = std::make_unique<BoundaryConditions>(
-        parameters.boundary_conditions, bodies, dof_handler, *mapping, parameters.load_stepping.interval_ends.back());
+        parameters.boundary_conditions, bodies, dof_handler, *mapping, parameters.load_stepping.interval_ends);
     solid    = std::make_unique<SolidAssembler>(dof_handler, *mapping, materials, boundary_conditions->loads());
     surfaces = std::make_unique<ContactSurfaces>(parameters.contact_pairs, bodies, dof_handler, *mapping);
     surfaces->set_fixed(boundary_conditions->homogeneous_constraints());
@@ -91,7 +94,7 @@ namespace Nodus
     layout.reinit(committed);
     layout.reinit(system.rhs);
     relevant_u.reinit(layout.owned[0], relevant, communicator);
-    for (Vector *v : {&internal, &external, &contact_force})
+    for (Vector *v : {&internal, &external, &contact_force, &reaction, &released})
       v->reinit(layout.owned[0], communicator);
 
     length_scale = 0.;
@@ -126,7 +129,7 @@ namespace Nodus
     }
   }
 
-  void ContactProblem::Implementation::write(const bool last)
+  void ContactProblem::Implementation::write(const unsigned int increment, const bool last)
   {
     std::vector<Tables::Reaction> table;
     for (const auto &[name, force] : reactions)
@@ -192,70 +195,29 @@ namespace Nodus
         vtu = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, *mapping, materials);
       tables = std::make_unique<Tables>(parameters.output.results_folder, communicator);
     }
+    if (restart)
+      read_checkpoint();
+    const auto report_anyway = [&]
+    {
+      if (const std::string problem = report_profile(false); !problem.empty())
+        console.line(problem); // why the run ends is what the caller must hear of
+    };
     try
     {
       follow_load_path();
     }
     catch (const SolverFailure &)
     {
-      if (const std::string problem = report_profile(false); !problem.empty())
-        console.line(problem); // the failure of the solver is what the caller must hear of
+      report_anyway();
+      throw;
+    }
+    catch (const Interrupted &)
+    {
+      report_anyway();
       throw;
     }
     throw_on_every_rank(report_profile(true), communicator);
     console.line("Results: " + parameters.output.results_folder);
-  }
-
-  void ContactProblem::Implementation::follow_load_path()
-  {
-    std::vector<double> times;
-    double              start = 0.;
-    const auto         &path  = parameters.load_stepping;
-    for (unsigned int i = 0; i < path.interval_ends.size(); ++i)
-    {
-      for (unsigned int n = 1; n <= path.increments[i]; ++n)
-        times.push_back(start + (path.interval_ends[i] - start) * n / path.increments[i]);
-      start = path.interval_ends[i];
-    }
-
-    for (increment = 1; increment <= times.size(); ++increment)
-    {
-      const double before = time;
-      time                = times[increment - 1];
-      console.begin_increment(increment, times.size(), time);
-      boundary_conditions->set_time(time);
-      try
-      {
-        solve_increment();
-      }
-      catch (const SolverFailure &failure)
-      {
-        roll_back();
-        time = before;
-        tables->add_failure();
-        if (vtu && increment > 1)
-        {
-          const auto timer = profile.time(Phase::output);
-          relevant_u       = committed.block(0);
-          vtu->write(increment - 1, before, relevant_u, fields);
-        }
-        std::ostringstream message;
-        message << "increment " << increment << " (t = " << times[increment - 1] << "), geometry pass " << pass.geometry
-                << ", threshold pass " << pass.threshold << ", status pass " << pass.status << ": " << failure.what()
-                << ". The last converged state is t = " << before
-                << (increment > 1 ? "" : " (only convergence.csv was written)");
-        throw SolverFailure(message.str());
-      }
-      commit();
-      {
-        const auto timer = profile.time(Phase::output);
-        update_results();
-        write(increment == times.size());
-      }
-      console.end_increment(counts, resultants);
-      if (callback)
-        callback(increment, time);
-    }
   }
 
   ContactProblem::ContactProblem(const Parameters &parameters, MPI_Comm communicator, std::ostream &log)
@@ -273,6 +235,11 @@ namespace Nodus
   void ContactProblem::profile()
   {
     implementation_->detailed_profile = true;
+  }
+
+  void ContactProblem::restart()
+  {
+    implementation_->restart = true;
   }
 
   const std::vector<ContactFields> &ContactProblem::contact_fields() const

@@ -76,7 +76,8 @@ namespace Nodus
                        {
                          console.newton_iteration(pass, iteration, norms, krylov);
                          pass.fallbacks = counts.fallbacks;
-                         tables->add(Tables::Iteration{increment, time, pass, iteration, norms, krylov});
+                         tables->add(Tables::Iteration{path.increment(), time, pass, iteration, norms, krylov});
+                         heed_signals();
                          counts.newton += iteration > 0;
                          counts.krylov += krylov;
                          profile.newton_iterations += iteration > 0;
@@ -185,22 +186,33 @@ namespace Nodus
     return all.max;
   }
 
+  /// The increment converged: keeps all that the next one starts from, which is also what a checkpoint holds. History
+  /// that is not kept here and rolled back below would make the result depend on increments that failed.
   void ContactProblem::Implementation::commit()
   {
     std::vector<std::array<double, 2>> slip;
     for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
       slip.push_back(contact->slip(state, s));
     status->commit(slip);
-    committed         = solution;
-    committed_pairing = pairing;
-    committed_area    = weights.area();
+    committed                 = solution;
+    committed_pairing         = pairing;
+    committed_area            = weights.area();
+    committed_stiffness_scale = stiffness_scale;
+    if (path.ends_interval())
+    {
+      const auto &constraints = boundary_conditions->homogeneous_constraints();
+      for (const DoFIndex i : surfaces->layout().owned[0])
+        reaction(i) = constraints.is_constrained(i) ? internal(i) - external(i) + contact_force(i) : 0.;
+      reaction.compress(dealii::VectorOperation::insert);
+    }
   }
 
   void ContactProblem::Implementation::roll_back()
   {
-    solution   = committed;
-    pairing    = committed_pairing;
-    nodal_area = committed_area;
+    solution        = committed;
+    pairing         = committed_pairing;
+    nodal_area      = committed_area;
+    stiffness_scale = committed_stiffness_scale;
     status->roll_back();
     gather_state();
   }

@@ -1,5 +1,6 @@
 #include <nodus/contact_problem.h>
 #include <nodus/parameters.h>
+#include <nodus/signals.h>
 
 #include <deal.II/base/config.h>
 #include <deal.II/base/mpi.h>
@@ -21,23 +22,26 @@ namespace
 {
   const char *const usage = R"(nodus: contact of 3D bodies at large deformation, with friction
 
-  nodus case.prm [--set "Section/Key=value"]... [--validate | --profile]
+  nodus case.prm [--set "Section/Key=value"]... [--validate | [--restart] [--profile]]
 
   case.prm                   the parameter file; one that ends in .json is read as JSON
   --set "Section/Key=value"  replaces a value of the file, e.g. --set "Contact pair 1/Friction coefficient=0.3"
   --validate                 reads the case, pairs the surfaces, prints what a run would start from and stops
+  --restart                  continues from the last complete checkpoint in the results folder, on any number of processes
   --profile                  prints CPU time, calls and memory by phase, and writes them to profile.json in the results folder
   --explain KEY              prints what all keys mean whose path contains KEY, e.g. --explain "friction"
   --document                 prints the reference of all parameters (Markdown)
   --version                  prints the versions of nodus and of its libraries
   --help                     prints this text
+
+  SIGUSR1 makes a run write a checkpoint and go on; SIGTERM and SIGINT make it write one and end (exit code 128 + signal).
 )";
 
   struct CommandLine
   {
     std::string              file;
     std::vector<std::string> overrides;
-    bool                     validate = false, profile = false;
+    bool                     validate = false, restart = false, profile = false;
     std::string              print;   ///< --document, --explain, --version or --help
     std::string              explain; ///< the key
   };
@@ -59,6 +63,8 @@ namespace
       }
       else if (argument == "--validate")
         command.validate = true;
+      else if (argument == "--restart")
+        command.restart = true;
       else if (argument == "--profile")
         command.profile = true;
       else if (argument == "--set")
@@ -77,8 +83,9 @@ namespace
     }
     if (command.file.empty() && command.print.empty())
       throw Nodus::InputError("no parameter file; see nodus --help");
-    if (command.validate && command.profile)
-      throw Nodus::InputError("--profile needs a run; leave out --validate");
+    if (command.validate && (command.profile || command.restart))
+      throw Nodus::InputError(std::string(command.profile ? "--profile" : "--restart") +
+                              " needs a run; leave out --validate");
     return command;
   }
 
@@ -129,6 +136,8 @@ namespace
       Nodus::ContactProblem problem(parameters, MPI_COMM_WORLD);
       if (command.profile)
         problem.profile();
+      if (command.restart)
+        problem.restart();
       if (command.validate)
         problem.validate();
       else
@@ -156,10 +165,13 @@ int main(int argc, char **argv)
         std::cout << text << std::flush;
     }
     else
+    {
+      Nodus::Signals::install();
       solve(Nodus::Parameters::read(command.file, command.overrides), command);
+    }
     return 0;
   }
-  // These two are thrown on all ranks alike, so that every rank comes to its orderly end.
+  // These are thrown on all ranks alike, so that every rank comes to its orderly end.
   catch (const Nodus::InputError &error)
   {
     if (first_rank)
@@ -171,6 +183,12 @@ int main(int argc, char **argv)
     if (first_rank)
       std::cerr << "nodus: no solution: " << error.what() << std::endl;
     return 1;
+  }
+  catch (const Nodus::Interrupted &interruption)
+  {
+    if (first_rank)
+      std::cerr << "nodus: " << interruption.what() << std::endl;
+    return 128 + interruption.signal;
   }
   // Anything else may have hit this rank only while the others wait for it.
   catch (const std::exception &error)

@@ -126,6 +126,8 @@ namespace Nodus
     {
       const auto timer = profile.time(Phase::bulk_assembly);
       solid->tangent(relevant_u, time, constraints, system.bulk, system.rhs.block(0), internal, external);
+      external += released;
+      system.rhs.block(0) += released;
     }
     if (merged.geometry && !first)
       pair_surfaces();

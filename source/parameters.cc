@@ -43,8 +43,11 @@ namespace Nodus
                         std::vector<unsigned int> &components,
                         const std::string         &documentation)
     {
+      std::string default_text;
+      for (const unsigned int c : components)
+        default_text += (default_text.empty() ? "" : ", ") + component_names[c].second;
       prm.declare_entry(
-          key, "", Patterns::List(Patterns::Selection(selection(component_names)), 0, dim), documentation);
+          key, default_text, Patterns::List(Patterns::Selection(selection(component_names)), 0, dim), documentation);
       prm.add_action(key,
                      [&components](const std::string &text)
                      {
@@ -65,7 +68,10 @@ namespace Nodus
                          std::vector<std::string> &expressions,
                          const std::string        &documentation)
     {
-      prm.declare_entry(key, "", anything_separated_by(";"), documentation);
+      std::string default_text;
+      for (const std::string &expression : expressions)
+        default_text += (default_text.empty() ? "" : "; ") + expression;
+      prm.declare_entry(key, default_text, anything_separated_by(";"), documentation);
       prm.add_action(key,
                      [&expressions](const std::string &text)
                      { expressions = dealii::Utilities::split_string_list(text, ';'); });
@@ -149,7 +155,18 @@ namespace Nodus
           "Value",
           condition.value,
           "Prescribed value [as Type says]: expressions of x, y, z [length] and the time t [-], separated by "
-          "';', one for each component or one for all.");
+          "';', one for each component or one for all. Displacements count from the reference position.");
+      const std::string how = "one of the Interval ends";
+      prm.add_parameter("Active from",
+                        condition.active_from,
+                        "Time after which the condition acts [-]: 0 or " + how + ".",
+                        not_negative);
+      prm.add_parameter("Active until",
+                        condition.active_until,
+                        "Time until which the condition acts [-]: " + how +
+                            "; 0: the end. From then on a load is zero and a displacement free; what held it, its "
+                            "reaction, goes to zero linearly in the interval after it.",
+                        not_negative);
     }
 
     void add(ParameterHandler &prm, ContactPairParameters &pair)
@@ -225,8 +242,26 @@ namespace Nodus
                         Patterns::List(not_negative, 1, many, ","));
       prm.add_parameter("Increments",
                         load.increments,
-                        "Number of equal increments of each interval [-].",
+                        "Number of equal increments of each interval [-], unless they fail or grow.",
                         Patterns::List(at_least_one, 1, many, ","));
+      prm.add_parameter("Cut back",
+                        load.cut_back,
+                        "Whether an increment that fails is halved and tried again [-]. After an easy one (see Easy "
+                        "iterations) increments grow back; the times that Increments asks for are met all the same.");
+      prm.add_parameter("Minimum increment",
+                        load.minimum_increment,
+                        "Increment of time below which a run is given up [-]; 0: 1/64 of what Increments asks for.",
+                        not_negative);
+      prm.add_parameter("Maximum increment",
+                        load.maximum_increment,
+                        "Increment of time up to which easy increments grow, beyond what Increments asks for [-]; the "
+                        "ends of the intervals are met all the same. 0: no such growth.",
+                        not_negative);
+      prm.add_parameter("Easy iterations",
+                        load.easy_iterations,
+                        "An increment with at most so many Newton iterations, and no merged iteration given up, is "
+                        "easy: the next one may be twice as large [-].",
+                        count);
     }
 
     void add(ParameterHandler &prm, OutputParameters &output)
@@ -242,6 +277,11 @@ namespace Nodus
       prm.add_parameter("VTU interval",
                         output.vtu_interval,
                         "Increments between two files of the fields [-]; 0: the last increment only.",
+                        count);
+      prm.add_parameter("Checkpoint interval",
+                        output.checkpoint_interval,
+                        "Increments between two checkpoints, from which --restart continues [-]; 0: only where a "
+                        "signal asks for one (SIGUSR1, SIGTERM, SIGINT).",
                         count);
     }
 
@@ -306,6 +346,19 @@ namespace Nodus
   std::string text_of(const LinearSolverParameters::Type type)
   {
     return text_of(type, solver_names);
+  }
+
+  std::map<std::string, std::string> Parameters::model() const
+  {
+    Parameters       copy(*this); // its values become the defaults of prm
+    ParameterHandler prm;
+    copy.add_parameters(prm);
+    std::map<std::string, std::string> values;
+    for (const auto &key : declared_keys(prm))
+      for (const std::string room : {"Discretization", "Body", "Boundary condition", "Contact pair"})
+        if (key.section.compare(0, room.size(), room) == 0)
+          values[key.section + '/' + key.key] = key.default_value;
+    return values;
   }
 
   Parameters Parameters::read(const std::string &file, const std::vector<std::string> &overrides)

@@ -83,7 +83,10 @@ namespace Nodus
         check_expression(section, prefixed(prefix, "Where"), region.where, false);
     }
 
-    void check(const Section &section, const BoundaryConditionParameters &condition, const unsigned int n_bodies)
+    void check(const Section                     &section,
+               const BoundaryConditionParameters &condition,
+               const unsigned int                 n_bodies,
+               const std::vector<double>         &interval_ends)
     {
       using Type = BoundaryConditionParameters::Type;
       check(section, condition.region, "", n_bodies, 0);
@@ -116,6 +119,15 @@ namespace Nodus
         section.require(!expression.empty(), "Value", "has an empty expression; write 0 for zero");
         check_expression(section, "Value", expression, true);
       }
+
+      for (const auto &[key, t] : {std::pair<const char *, double>("Active from", condition.active_from),
+                                   {"Active until", condition.active_until}})
+        section.require(t == 0. || std::count(interval_ends.begin(), interval_ends.end(), t) > 0,
+                        key,
+                        "must be 0 or one of the times in Load stepping / Interval ends; add it there");
+      section.require(condition.active_until == 0. || condition.active_until > condition.active_from,
+                      "Active until",
+                      "is not after Active from; the condition would never act");
     }
 
     bool share_faces(const RegionParameters &a, const RegionParameters &b)
@@ -172,6 +184,9 @@ namespace Nodus
                       "has " + std::to_string(load.increments.size()) + " entries for " +
                           std::to_string(load.interval_ends.size()) +
                           " entries of Interval ends; give one number for each interval");
+      section.require(load.maximum_increment == 0. || load.minimum_increment <= load.maximum_increment,
+                      "Minimum increment",
+                      "is larger than Maximum increment; lower it");
     }
 
     template <typename Struct>
@@ -196,7 +211,10 @@ namespace Nodus
     for (unsigned int i = 0; i < n_bodies; ++i)
       Nodus::check({file, "Body " + std::to_string(i + 1)}, bodies[i]);
     for (unsigned int i = 0; i < boundary_conditions.size(); ++i)
-      Nodus::check({file, "Boundary condition " + std::to_string(i + 1)}, boundary_conditions[i], n_bodies);
+      Nodus::check({file, "Boundary condition " + std::to_string(i + 1)},
+                   boundary_conditions[i],
+                   n_bodies,
+                   load_stepping.interval_ends);
     for (unsigned int i = 0; i < contact_pairs.size(); ++i)
     {
       const Section section{file, "Contact pair " + std::to_string(i + 1)};

@@ -26,12 +26,17 @@ namespace Nodus
     ~ContactProblem();
 
     /// Follows the load path; results of every converged increment are on disk when it returns or throws.
-    /// @throws SolverFailure with the increment, the loop, the reason and the worst node.
+    /// @throws SolverFailure with the increment, the loop, the reason and the worst node; Interrupted (signals.h) after
+    /// SIGTERM and SIGINT, with a checkpoint on disk.
     void run();
 
     /// run() ends, also when it throws SolverFailure, with CPU time and memory by phase: printed, and as profile.json
     /// in the results folder.
     void profile();
+
+    /// run() continues from the last complete checkpoint in the results folder, on any number of ranks; without any it
+    /// begins at t = 0. It throws InputError when the checkpoint is of another model.
+    void restart();
 
     /// Pairs the surfaces in the reference configuration and prints what a run would start from.
     void validate();

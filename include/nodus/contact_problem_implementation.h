@@ -7,12 +7,14 @@
 #include <nodus/contact/contact_assembler.h>
 #include <nodus/contact_problem.h>
 #include <nodus/mesh/bodies.h>
+#include <nodus/output/checkpoint.h>
 #include <nodus/output/console.h>
 #include <nodus/output/profile.h>
 #include <nodus/output/tables.h>
 #include <nodus/output/vtu.h>
 #include <nodus/solve/fixed_point_loop.h>
 #include <nodus/solve/linear_solver.h>
+#include <nodus/solve/load_stepping.h>
 #include <nodus/solve/newton.h>
 
 #include <deal.II/fe/fe_system.h>
@@ -30,8 +32,8 @@ namespace Nodus
     }
   };
 
-  /// Everything a run owns. contact_problem.cc builds it, follows the load path and reports; load_increment.cc holds
-  /// the three nested loops, newton_iterate.cc what Newton sees.
+  /// Everything a run owns. contact_problem.cc builds it and reports, load_path.cc goes from increment to increment,
+  /// load_increment.cc holds the three nested loops, newton_iterate.cc what Newton sees, restart.cc the checkpoints.
   struct ContactProblem::Implementation : public NewtonProblem
   {
     Implementation(const Parameters &parameters, MPI_Comm communicator, std::ostream &log);
@@ -39,6 +41,7 @@ namespace Nodus
     // The algorithm, outermost first.
     void           run();
     void           follow_load_path();
+    void           impose(double t);
     void           solve_increment();
     void           solve_loops();
     void           pair_surfaces();
@@ -61,7 +64,12 @@ namespace Nodus
     std::string              unknown_locus(DoFIndex flat_index) const;
     void                     commit();
     void                     roll_back();
-    void                     write(bool last);
+    [[noreturn]] void        give_up(const std::string &reason, bool converged_before);
+    void                     write_checkpoint();
+    void                     read_checkpoint();
+    void                     read_pieces(const std::vector<std::filesystem::path> &pieces);
+    void                     heed_signals();
+    void                     write(unsigned int increment, bool last);
     void                     update_results();
     void                     summary();
     std::string              report_profile(bool converged);
@@ -98,6 +106,9 @@ namespace Nodus
     double                        stiffness_scale = 0.; ///< largest diagonal entry of the first bulk tangent
     double                        length_scale; ///< displacements are measured against this when the step moves nothing
 
+    double              committed_stiffness_scale = 0.;
+    Vector              reaction; ///< of what was prescribed when the last interval ended; what is released sheds it
+    Vector              released; ///< what is left of it now where nothing is prescribed any more
     Pairing             committed_pairing;          ///< at the start of the load step
     std::vector<double> nodal_area, committed_area; ///< that the multipliers of solution and committed refer to
 
@@ -109,9 +120,10 @@ namespace Nodus
     double          prescribed_before = 0.; ///< still to be met at the last assembly, relative
     MergedLoops     merged;                 ///< in this attempt at the increment
 
-    double          time      = 0.;
-    unsigned int    increment = 0; ///< that is being solved, from 1
-    IterationCounts pass, counts;  ///< where the loops stand, and totals of the increment
+    LoadStepping    path;
+    bool            restart = false; ///< asked for: continue from a checkpoint
+    double          time    = 0.;    ///< that the increment at hand goes to
+    IterationCounts pass, counts;    ///< where the loops stand, and totals of the increment
 
     std::vector<ContactFields>                   fields;       ///< of this rank's part of the surfaces
     std::vector<ContactFields>                   whole_fields; ///< of all ranks, once somebody asked for them
@@ -120,6 +132,7 @@ namespace Nodus
     std::function<void(unsigned int, double)>    callback;
     std::unique_ptr<VtuOutput>                   vtu;
     std::unique_ptr<Tables>                      tables;
+    Checkpoints                                  checkpoints;
   };
 
   /// "(x y z)", for messages.

@@ -3,6 +3,7 @@
 
 #include <nodus/types.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,14 @@ namespace Nodus
     RegionParameters          region;
     std::vector<unsigned int> components; ///< 0, 1, 2; not used by pressure
     std::vector<std::string>  value;      ///< muParser expressions of x, y, z, t: one per component, one for pressure
+    double                    active_from  = 0.; ///< acts in the increments after this time ...
+    double                    active_until = 0.; ///< ... that end at this time at the latest; 0 = the whole path
+
+    /// Whether it counts for the equilibrium at time @p t.
+    bool acts(const double t) const
+    {
+      return (active_from == 0. || t > active_from) && (active_until == 0. || t <= active_until);
+    }
   };
 
   struct ContactPairParameters
@@ -187,13 +196,18 @@ namespace Nodus
   {
     std::vector<double>       interval_ends = {1.}; ///< increasing times; the first interval starts at 0
     std::vector<unsigned int> increments    = {1};  ///< per interval
+    bool                      cut_back      = true; ///< halve increments that fail
+    double       minimum_increment = 0.; ///< of time, that cut-backs stop at; 0 = 1/64 of the interval's increments
+    double       maximum_increment = 0.; ///< of time, that increments grow to; 0 = the interval's increments
+    unsigned int easy_iterations   = 10; ///< of Newton, up to which the next increment may be twice as large
   };
 
   struct OutputParameters
   {
     std::string  results_folder; ///< empty = results/<name of the .prm file>, in the working folder
-    bool         write_vtu    = true;
-    unsigned int vtu_interval = 1; ///< every so many increments; 0 = only the last one
+    bool         write_vtu           = true;
+    unsigned int vtu_interval        = 1;  ///< every so many increments; 0 = only the last one
+    unsigned int checkpoint_interval = 10; ///< every so many increments; 0 = on signals only
   };
 
   struct Parameters
@@ -214,6 +228,10 @@ namespace Nodus
 
     /// Strict parse of @p file after applying @p overrides ("Section/Key=value"). Throws InputError.
     static Parameters read(const std::string &file, const std::vector<std::string> &overrides = {});
+
+    /// Values of the keys that may not change from a checkpoint to the restart, by "Section/Key": discretization,
+    /// bodies, boundary conditions and contact pairs.
+    std::map<std::string, std::string> model() const;
 
     /// The reference of all parameters in Markdown (`nodus --document`).
     static std::string documentation();

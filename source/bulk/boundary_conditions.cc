@@ -6,6 +6,7 @@
 #include <deal.II/fe/fe.h>
 #include <deal.II/lac/trilinos_vector.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <sstream>
@@ -75,14 +76,14 @@ namespace Nodus
                        (parameters[condition].type == Type::body_force ? "'Body'" : "'Boundary ids'") + " and 'Where'");
     }
 
-    /// Values of one expression at the start, the middle and the end of the load path.
-    std::array<double, 3>
-    history(FunctionParser<dim> &function, const Point &X, const unsigned int entry, const double end_time)
+    /// Values of one expression at the start, the middle and the end of a part of the load path.
+    std::array<double, 3> history(
+        FunctionParser<dim> &function, const Point &X, const unsigned int entry, const double begin, const double end)
     {
       std::array<double, 3> values;
       for (unsigned int s = 0; s < 3; ++s)
       {
-        function.set_time(s * end_time / 2.);
+        function.set_time(begin + s * (end - begin) / 2.);
         values[s] = function.value(X, entry);
       }
       return values;
@@ -112,15 +113,44 @@ namespace Nodus
                                          const Bodies                                   &bodies,
                                          const DoFHandler<dim>                          &dof_handler,
                                          const Mapping<dim>                             &mapping,
-                                         const double                                    end_time)
-      : parameters_(parameters)
+                                         const std::vector<double>                      &interval_ends)
+      : bodies_(bodies)
+      , dof_handler_(dof_handler)
+      , mapping_(mapping)
+      , parameters_(parameters)
   {
     for (unsigned int n = 0; n < parameters_.size(); ++n)
       functions_.push_back(parse(parameters_[n], label(n)));
-    add_loads(bodies, dof_handler, mapping);
-    collect_prescribed(find_held(bodies, dof_handler, mapping, end_time), dof_handler, mapping);
-    make_constraints(dof_handler);
+    add_loads();
+    find_stages(interval_ends);
+    for (unsigned int stage = stages_.size(); stage-- > 0;) // all are checked, the first one stays
+      enter(stage);
     set_time(0.);
+  }
+
+  void BoundaryConditions::find_stages(const std::vector<double> &interval_ends)
+  {
+    double begin = 0.;
+    for (const double end : interval_ends)
+    {
+      std::vector<bool> acts;
+      for (const auto &condition : parameters_)
+        acts.push_back(condition.type == Type::displacement && condition.acts(end));
+      if (!stages_.empty() && stages_.back().acts == acts)
+        stages_.back().end = end;
+      else
+        stages_.push_back({begin, end, acts});
+      begin = end;
+    }
+  }
+
+  void BoundaryConditions::enter(const unsigned int stage)
+  {
+    stage_ = stage;
+    reaction_regions_.clear();
+    prescribed_.clear();
+    collect_prescribed(find_held(stages_[stage]));
+    make_constraints();
   }
 
   std::string BoundaryConditions::label(const unsigned int condition) const
@@ -129,8 +159,7 @@ namespace Nodus
     return "Boundary condition " + std::to_string(condition + 1) + (name.empty() ? "" : " ('" + name + "')");
   }
 
-  void
-  BoundaryConditions::add_loads(const Bodies &bodies, const DoFHandler<dim> &dof_handler, const Mapping<dim> &mapping)
+  void BoundaryConditions::add_loads()
   {
     std::vector<unsigned int> found(parameters_.size(), 0);
     for (unsigned int n = 0; n < parameters_.size(); ++n)
@@ -140,19 +169,19 @@ namespace Nodus
         RegionParameters where    = parameters_[n].region;
         if (on_cells)
           where.boundary_ids.clear();
-        Load load{&parameters_[n], Region(where, bodies, label(n)), functions_[n].get()};
-        for (const auto &cell : dof_handler.active_cell_iterators())
+        Load load{&parameters_[n], Region(where, bodies_, label(n)), functions_[n].get()};
+        for (const auto &cell : dof_handler_.active_cell_iterators())
           if (cell->is_locally_owned())
           {
             if (on_cells)
-              found[n] += load.region.selects_cell(mapping, cell);
+              found[n] += load.region.selects_cell(mapping_, cell);
             else
               for (const auto face : cell->face_indices())
-                found[n] += load.region.selects_face(mapping, cell, face);
+                found[n] += load.region.selects_face(mapping_, cell, face);
           }
         loads_.push_back(std::move(load));
       }
-    Utilities::MPI::max(found, dof_handler.get_communicator(), found);
+    Utilities::MPI::max(found, dof_handler_.get_communicator(), found);
     for (const auto &load : loads_)
     {
       const unsigned int n = load.parameters - parameters_.data();
@@ -161,14 +190,11 @@ namespace Nodus
   }
 
   /// Owned degrees of freedom only: all cells around them are known here, so no face of a region is missed.
-  std::map<DoFIndex, BoundaryConditions::Held> BoundaryConditions::find_held(const Bodies          &bodies,
-                                                                             const DoFHandler<dim> &dof_handler,
-                                                                             const Mapping<dim>    &mapping,
-                                                                             const double           end_time)
+  std::map<DoFIndex, BoundaryConditions::Held> BoundaryConditions::find_held(const Stage &stage)
   {
-    const auto               &fe        = dof_handler.get_fe();
+    const auto               &fe        = dof_handler_.get_fe();
     const auto               &scalar_fe = fe.base_element(0);
-    const IndexSet           &owned     = dof_handler.locally_owned_dofs();
+    const IndexSet           &owned     = dof_handler_.locally_owned_dofs();
     std::map<DoFIndex, Held>  held;
     std::vector<unsigned int> found(parameters_.size(), 0);
     std::vector<DoFIndex>     dofs(fe.n_dofs_per_cell());
@@ -180,11 +206,12 @@ namespace Nodus
       const Held &first   = new_one.first->second;
       if (!error.empty() || (!new_one.second && first.condition == n && first.entry == e))
         return;
-      const auto values   = history(*functions_[n], X, e, end_time);
+      const auto values   = history(*functions_[n], X, e, stage.begin, stage.end);
       const auto position = at(X, parameters_[n].components[e]);
       if (!std::isfinite(values[0] + values[1] + values[2]))
         error = label(n) + ": '" + parameters_[n].value[e] + "' is not a number for " + position;
-      else if (!new_one.second && !agree(values, history(*functions_[first.condition], X, first.entry, end_time)))
+      else if (!new_one.second &&
+               !agree(values, history(*functions_[first.condition], X, first.entry, stage.begin, stage.end)))
         error = label(first.condition) + " and " + label(n) + " prescribe different values for " + position + ": '" +
                 parameters_[first.condition].value[first.entry] + "' and '" + parameters_[n].value[e] +
                 "'; restrict one of them with 'Where' or 'Components'";
@@ -193,10 +220,12 @@ namespace Nodus
     for (unsigned int n = 0; n < parameters_.size(); ++n)
       if (parameters_[n].type == Type::displacement)
       {
-        const Region region(parameters_[n].region, bodies, label(n));
         reaction_regions_.push_back(
             {parameters_[n].name.empty() ? "boundary condition " + std::to_string(n + 1) : parameters_[n].name, {}});
-        for (const auto &cell : dof_handler.active_cell_iterators())
+        if (!stage.acts[n])
+          continue;
+        const Region region(parameters_[n].region, bodies_, label(n));
+        for (const auto &cell : dof_handler_.active_cell_iterators())
           if (!cell->is_artificial())
             for (const auto face : cell->face_indices())
               if (region.contains_face(cell, face))
@@ -205,7 +234,7 @@ namespace Nodus
                 for (unsigned int a = 0; a < scalar_fe.n_dofs_per_cell(); ++a)
                   if (scalar_fe.has_support_on_face(a, face))
                   {
-                    const Point X = mapping.transform_unit_to_real_cell(cell, scalar_fe.unit_support_point(a));
+                    const Point X = mapping_.transform_unit_to_real_cell(cell, scalar_fe.unit_support_point(a));
                     if (!region.contains_point(X))
                       continue;
                     ++found[n];
@@ -222,32 +251,30 @@ namespace Nodus
           if (where.condition == n)
             reaction_regions_.back().dofs[parameters_[n].components[where.entry]].push_back(dof);
       }
-    throw_everywhere<InputError>(error, dof_handler.get_communicator());
-    Utilities::MPI::max(found, dof_handler.get_communicator(), found);
+    throw_everywhere<InputError>(error, dof_handler_.get_communicator());
+    Utilities::MPI::max(found, dof_handler_.get_communicator(), found);
     for (unsigned int n = 0; n < parameters_.size(); ++n)
-      if (parameters_[n].type == Type::displacement)
+      if (stage.acts[n])
         check_found(found, parameters_, n, label(n), "node");
     return held;
   }
 
   /// Ghosts ask their owner: the face of a region may belong to a cell that this rank does not know.
-  void BoundaryConditions::collect_prescribed(const std::map<DoFIndex, Held> &held,
-                                              const DoFHandler<dim>          &dof_handler,
-                                              const Mapping<dim>             &mapping)
+  void BoundaryConditions::collect_prescribed(const std::map<DoFIndex, Held> &held)
   {
-    const IndexSet &owned    = dof_handler.locally_owned_dofs();
-    const IndexSet  relevant = DoFTools::extract_locally_relevant_dofs(dof_handler);
-    Vector          code_of_owned(owned, dof_handler.get_communicator());
-    Vector          code(owned, relevant, dof_handler.get_communicator());
+    const IndexSet &owned    = dof_handler_.locally_owned_dofs();
+    const IndexSet  relevant = DoFTools::extract_locally_relevant_dofs(dof_handler_);
+    Vector          code_of_owned(owned, dof_handler_.get_communicator());
+    Vector          code(owned, relevant, dof_handler_.get_communicator());
     for (const auto &[dof, where] : held)
       code_of_owned(dof) = 1 + dim * where.condition + where.entry;
     code_of_owned.compress(VectorOperation::insert);
     code = code_of_owned;
 
-    const auto                    &fe = dof_handler.get_fe();
+    const auto                    &fe = dof_handler_.get_fe();
     std::vector<DoFIndex>          dofs(fe.n_dofs_per_cell());
     std::map<DoFIndex, Prescribed> all;
-    for (const auto &cell : dof_handler.active_cell_iterators())
+    for (const auto &cell : dof_handler_.active_cell_iterators())
       if (!cell->is_artificial())
       {
         cell->get_dof_indices(dofs);
@@ -255,7 +282,7 @@ namespace Nodus
           if (code(dofs[i]) != 0. && all.count(dofs[i]) == 0)
           {
             const unsigned int found = static_cast<unsigned int>(code(dofs[i])) - 1;
-            const Point        X     = mapping.transform_unit_to_real_cell(
+            const Point        X     = mapping_.transform_unit_to_real_cell(
                 cell, fe.base_element(0).unit_support_point(fe.system_to_component_index(i).second));
             all[dofs[i]] = {dofs[i], X, found / dim, found % dim, 0.};
           }
@@ -264,10 +291,10 @@ namespace Nodus
       prescribed_.push_back(one);
   }
 
-  void BoundaryConditions::make_constraints(const DoFHandler<dim> &dof_handler)
+  void BoundaryConditions::make_constraints()
   {
-    lines_.reinit(DoFTools::extract_locally_relevant_dofs(dof_handler));
-    DoFTools::make_hanging_node_constraints(dof_handler, lines_);
+    lines_.reinit(DoFTools::extract_locally_relevant_dofs(dof_handler_));
+    DoFTools::make_hanging_node_constraints(dof_handler_, lines_);
 
     // a hanging node of a region follows its masters, which belong to the region as well
     std::vector<Prescribed> not_hanging;
@@ -281,12 +308,18 @@ namespace Nodus
     homogeneous_.close();
   }
 
-  void BoundaryConditions::set_time(const double t)
+  bool BoundaryConditions::set_time(const double t)
   {
+    const auto now = std::find_if(stages_.begin(), stages_.end(), [&](const Stage &stage) { return t <= stage.end; });
+    const unsigned int stage   = now == stages_.end() ? stages_.size() - 1 : now - stages_.begin();
+    const bool         changes = stage != stage_;
+    if (changes)
+      enter(stage);
     for (auto &function : functions_)
       function->set_time(t);
     for (auto &one : prescribed_)
       one.value = functions_[one.condition]->value(one.X, one.entry);
+    return changes;
   }
 
   const AffineConstraints<double> &BoundaryConditions::increment_constraints(const Vector &u)

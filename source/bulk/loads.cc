@@ -137,6 +137,7 @@ namespace Nodus
   {
     if (t == time)
       return;
+    time = t;
     for (auto &load : loads)
       load.value->set_time(t);
     for (auto &loaded : loaded_cells)
@@ -146,11 +147,10 @@ namespace Nodus
         face.values.clear();
         for (const auto &point : face.points)
           for (unsigned int c = 0; c < face.load->value->n_components; ++c)
-            face.values.push_back(face.load->value->value(point.X, c));
+            face.values.push_back(face.load->parameters->acts(t) ? face.load->value->value(point.X, c) : 0.);
       }
       evaluate_dead_loads(loaded);
     }
-    time = t;
   }
 
   void Loads::Implementation::evaluate_dead_loads(LoadedCell &loaded)
@@ -162,7 +162,8 @@ namespace Nodus
       for (const auto q : volume.quadrature_point_indices())
         for (unsigned int c = 0; c < load->parameters->components.size(); ++c)
         {
-          const double force = load->value->value(volume.quadrature_point(q), c) * volume.JxW(q);
+          const double value = load->parameters->acts(time) ? load->value->value(volume.quadrature_point(q), c) : 0.;
+          const double force = value * volume.JxW(q);
           for (unsigned int a = 0; a < dof_handler.get_fe().base_element(0).n_dofs_per_cell(); ++a)
           {
             const unsigned int i = dof(a, load->parameters->components[c]);

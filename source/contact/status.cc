@@ -265,4 +265,23 @@ namespace Nodus
     now_ = committed_;
     update_floor();
   }
+
+  Status::Record Status::kept(const unsigned int site) const
+  {
+    const State &c = committed_;
+    return {{double(c.contact[site]), double(c.stick[site]), c.threshold[site], c.slip[site][0], c.slip[site][1]}};
+  }
+
+  void Status::restore(std::vector<Record> records)
+  {
+    surfaces_.site_exchange().update(records);
+    for (unsigned int k = 0; k < records.size(); ++k)
+    {
+      committed_.contact[k]   = records[k][0] != 0.;
+      committed_.stick[k]     = records[k][1] != 0.;
+      committed_.threshold[k] = records[k][2];
+      committed_.slip[k]      = {{records[k][3], records[k][4]}};
+    }
+    roll_back();
+  }
 } // namespace Nodus

@@ -354,8 +354,7 @@ namespace Nodus
   void ContactSurfaces::set_fixed(const dealii::AffineConstraints<double> &constraints)
   {
     for (const auto i : layout_.owned[0])
-      if (constraints.is_constrained(i))
-        fixed_mask_(i) = 1.;
+      fixed_mask_(i) = constraints.is_constrained(i) ? 1. : 0.;
     fixed_mask_.compress(dealii::VectorOperation::insert);
     gather_fixed();
   }

@@ -38,12 +38,10 @@ namespace Nodus
       stream_ << text << std::endl;
   }
 
-  void Console::begin_increment(const unsigned int increment, const unsigned int n_increments, const double t)
+  void Console::begin_increment(const unsigned int increment, const double begin, const double end)
   {
-    increment_    = increment;
-    n_increments_ = n_increments;
     line("");
-    line(format("Increment %u of %u, t = %g", increment, n_increments, t));
+    line(format("Increment %u, t = %g to %g", increment, begin, end));
     line("  geometry threshold status Newton |      force    contact | Krylov");
   }
 
@@ -67,7 +65,9 @@ namespace Nodus
     line("    " + text);
   }
 
-  void Console::end_increment(const IterationCounts &counts, const std::vector<ContactResultants> &contact)
+  void Console::end_increment(const IterationCounts                &counts,
+                              const std::vector<ContactResultants> &contact,
+                              const double                          progress)
   {
     line(format("  converged: %u geometry, %u threshold, %u status passes, %u Newton iterations",
                 counts.geometry,
@@ -88,14 +88,14 @@ namespace Nodus
                   c.slip,
                   c.stick) +
            (c.unpaired > 0 ? format(" (%u without master)", c.unpaired) : ""));
-    if (seconds_since(last_progress_) > progress_interval && increment_ > 0 && increment_ < n_increments_)
+    if (seconds_since(last_progress_) > progress_interval && progress > progress_at_start_ && progress < 1.)
     {
       last_progress_       = std::chrono::steady_clock::now();
       const double elapsed = seconds_since(start_);
-      line(format("  progress: %u %%, %.0f s elapsed, about %.0f s to go",
-                  100 * increment_ / n_increments_,
+      line(format("  progress: %.0f %%, %.0f s elapsed, about %.0f s to go",
+                  100 * progress,
                   elapsed,
-                  elapsed * (n_increments_ - increment_) / increment_));
+                  elapsed * (1. - progress) / (progress - progress_at_start_)));
     }
   }
 } // namespace Nodus

@@ -53,10 +53,7 @@ namespace Nodus
   Tables::Tables(const std::string &folder, MPI_Comm communicator)
       : folder_(folder)
       , communicator_(communicator)
-      , writes_(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
-      , contact_rows_(contact_header)
-      , reaction_rows_(reaction_header)
-      , iteration_rows_(iteration_header)
+      , rows_{contact_header, reaction_header, iteration_header}
   {
     make_results_folder(folder, communicator);
   }
@@ -67,65 +64,74 @@ namespace Nodus
                    const std::vector<Reaction>          &reactions,
                    const IterationCounts                &counts)
   {
-    std::string problem;
-    if (writes_)
+    auto contact_rows = row();
+    for (const auto &pair : contact)
     {
-      auto contact_rows = row();
-      for (const auto &pair : contact)
-      {
-        contact_rows << increment << ',' << t << ',' << quoted(pair.name);
-        for (const auto &v : {pair.slave_force, pair.slave_moment, pair.master_force, pair.master_moment})
-          print(contact_rows, v);
-        contact_rows << ',' << pair.contact_area << ',' << pair.maximum_pressure << ',' << pair.open << ',' << pair.slip
-                     << ',' << pair.stick << ',' << pair.unpaired << ',' << counts.geometry << ',' << counts.threshold
-                     << ',' << counts.status << ',' << counts.newton << ',' << counts.krylov << ','
-                     << pair.status_changes;
-        for (const unsigned int n : pair.contradictions)
-          contact_rows << ',' << n;
-        contact_rows << ',' << pair.longest_cycle << ',' << counts.fallbacks << '\n';
-      }
-      contact_rows_ += contact_rows.str();
+      contact_rows << increment << ',' << t << ',' << quoted(pair.name);
+      for (const auto &v : {pair.slave_force, pair.slave_moment, pair.master_force, pair.master_moment})
+        print(contact_rows, v);
+      contact_rows << ',' << pair.contact_area << ',' << pair.maximum_pressure << ',' << pair.open << ',' << pair.slip
+                   << ',' << pair.stick << ',' << pair.unpaired << ',' << counts.geometry << ',' << counts.threshold
+                   << ',' << counts.status << ',' << counts.newton << ',' << counts.krylov << ','
+                   << pair.status_changes;
+      for (const unsigned int n : pair.contradictions)
+        contact_rows << ',' << n;
+      contact_rows << ',' << pair.longest_cycle << ',' << counts.fallbacks << '\n';
+    }
+    rows_.contact += contact_rows.str();
 
-      auto reaction_rows = row();
-      for (const auto &reaction : reactions)
-      {
-        reaction_rows << increment << ',' << t << ',' << quoted(reaction.name);
-        print(reaction_rows, reaction.force);
-        reaction_rows << '\n';
-      }
-      reaction_rows_ += reaction_rows.str();
+    auto reaction_rows = row();
+    for (const auto &reaction : reactions)
+    {
+      reaction_rows << increment << ',' << t << ',' << quoted(reaction.name);
+      print(reaction_rows, reaction.force);
+      reaction_rows << '\n';
+    }
+    rows_.reactions += reaction_rows.str();
+    finish_iterations();
+    write();
+  }
 
-      finish_iterations();
-      for (const auto &[name, rows] : {std::pair<const char *, const std::string *>{"contact.csv", &contact_rows_},
-                                       {"reactions.csv", &reaction_rows_},
-                                       {"convergence.csv", &iteration_rows_}})
-        if (problem.empty())
-          problem = write(name, *rows);
+  void Tables::continue_from(const Rows &rows)
+  {
+    rows_ = rows;
+    write();
+  }
+
+  void Tables::write() const
+  {
+    for (const auto &[name, rows] : {std::pair<const char *, const std::string *>{"contact.csv", &rows_.contact},
+                                     {"reactions.csv", &rows_.reactions},
+                                     {"convergence.csv", &rows_.iterations}})
+      write(name, *rows);
+  }
+
+  void Tables::write(const std::string &name, const std::string &rows) const
+  {
+    std::string problem;
+    if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
+    {
+      CompleteFile file(folder_, name);
+      file.stream() << rows;
+      problem = file.finish();
     }
     throw_on_every_rank(problem, communicator_);
   }
 
   void Tables::add(const Iteration &iteration)
   {
-    if (writes_)
-      iterations_.push_back(iteration);
+    iterations_.push_back(iteration);
   }
 
   void Tables::add_status_changes(const unsigned int n)
   {
-    if (writes_)
-      iterations_.back().norms.changes += n;
+    iterations_.back().norms.changes += n;
   }
 
   void Tables::add_failure()
   {
-    std::string problem;
-    if (writes_)
-    {
-      finish_iterations();
-      problem = write("convergence.csv", iteration_rows_);
-    }
-    throw_on_every_rank(problem, communicator_);
+    finish_iterations();
+    write("convergence.csv", rows_.iterations);
   }
 
   void Tables::finish_iterations()
@@ -135,15 +141,7 @@ namespace Nodus
       rows << i.increment << ',' << i.t << ',' << i.pass.fallbacks + 1 << ',' << i.pass.geometry << ','
            << i.pass.threshold << ',' << i.pass.status << ',' << i.iteration << ',' << i.norms.force << ','
            << i.norms.contact << ',' << i.krylov << ',' << i.norms.changes << '\n';
-    iteration_rows_ += rows.str();
+    rows_.iterations += rows.str();
     iterations_.clear();
-  }
-
-  /// @returns what went wrong
-  std::string Tables::write(const std::string &name, const std::string &rows) const
-  {
-    CompleteFile file(folder_, name);
-    file.stream() << rows;
-    return file.finish();
   }
 } // namespace Nodus

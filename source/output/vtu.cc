@@ -157,6 +157,22 @@ namespace Nodus
     constexpr unsigned int stress_row[2][dim]    = {{0, 1, 2}, {1, 0, 0}};
     constexpr unsigned int stress_column[2][dim] = {{0, 1, 2}, {2, 2, 1}};
 
+    /// A file that @p write fills, complete or not at all. @returns what went wrong.
+    template <typename Write>
+    std::string write_complete(const std::string &folder, const std::string &name, const Write &write)
+    {
+      CompleteFile file(folder, name);
+      try
+      {
+        write(file.stream());
+      }
+      catch (const ExcIO &)
+      {
+        // deal.II found the stream in a bad state, and so does finish(), which has more to say
+      }
+      return file.finish();
+    }
+
     double von_mises(const SymmetricTensor<2, dim> &stress)
     {
       return std::sqrt(1.5) * deviator(stress).norm();
@@ -176,14 +192,14 @@ namespace Nodus
     unsigned int n_ranks      = Utilities::MPI::n_mpi_processes(communicator);
     unsigned int degree       = dof_handler.get_fe().degree;
 
-    /// (time, file) of what was written so far, by the name of the series.
-    std::map<std::string, std::vector<std::pair<double, std::string>>> written = {};
+    Series written = {};
 
     std::array<Vector, 2> nodal_stress(const Vector &u) const;
     void                  add_bodies(const Vector &u, Output<dim> &output) const;
     void                  add_contact(const std::vector<ContactFields> &contact, Output<dim - 1> &output) const;
     template <int patch_dim>
-    void write(const std::string &series, unsigned int increment, double t, const Output<patch_dim> &output);
+    void        write(const std::string &series, unsigned int increment, double t, const Output<patch_dim> &output);
+    std::string write_record(const std::string &series) const;
   };
 
   /// Cauchy stress at the nodes: lumped-mass L2 projection, that is the average of the integration points weighted
@@ -323,9 +339,8 @@ namespace Nodus
     const auto        piece = [&](const unsigned int r)
     { return stem + (n_ranks == 1 ? "" : '.' + Utilities::int_to_string(r, 4)) + ".vtu"; };
 
-    CompleteFile file(folder, piece(rank));
-    output.write_vtu(file.stream());
-    throw_on_every_rank(file.finish(), communicator);
+    throw_on_every_rank(write_complete(folder, piece(rank), [&](std::ostream &out) { output.write_vtu(out); }),
+                        communicator);
 
     auto &files = written[series];
     files.emplace_back(t, stem + (n_ranks == 1 ? ".vtu" : ".pvtu"));
@@ -335,17 +350,19 @@ namespace Nodus
       std::vector<std::string> pieces(n_ranks);
       for (unsigned int r = 0; r < n_ranks; ++r)
         pieces[r] = piece(r);
-      CompleteFile record(folder, files.back().second);
-      output.write_pvtu_record(record.stream(), pieces);
-      problem = record.finish();
+      problem = write_complete(
+          folder, files.back().second, [&](std::ostream &out) { output.write_pvtu_record(out, pieces); });
     }
     if (rank == 0 && problem.empty())
-    {
-      CompleteFile record(folder, series + ".pvd");
-      DataOutBase::write_pvd_record(record.stream(), files);
-      problem = record.finish();
-    }
+      problem = write_record(series);
     throw_on_every_rank(problem, communicator);
+  }
+
+  /// @returns what went wrong.
+  std::string VtuOutput::Implementation::write_record(const std::string &series) const
+  {
+    return write_complete(
+        folder, series + ".pvd", [&](std::ostream &out) { DataOutBase::write_pvd_record(out, written.at(series)); });
   }
 
   VtuOutput::VtuOutput(const std::string                            &folder,
@@ -359,6 +376,22 @@ namespace Nodus
   }
 
   VtuOutput::~VtuOutput() = default;
+
+  const VtuOutput::Series &VtuOutput::series() const
+  {
+    return implementation_->written;
+  }
+
+  void VtuOutput::continue_from(const Series &series)
+  {
+    implementation_->written = series;
+    std::string problem;
+    if (implementation_->rank == 0)
+      for (const auto &one : series)
+        if (problem.empty())
+          problem = implementation_->write_record(one.first);
+    throw_on_every_rank(problem, implementation_->communicator);
+  }
 
   void VtuOutput::write(const unsigned int                increment,
                         const double                      t,

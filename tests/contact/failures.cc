@@ -60,7 +60,9 @@ int main(int argc, char **argv)
   newton.newton.maximum_iterations = 1;
   newton.load_stepping             = {{1.}, {10}};
   check_words(
-      "Newton without iterations left", outcome(newton), {"Newton did not converge in 1 iterations", "status pass 1"});
+      "Newton without iterations left",
+      outcome(newton),
+      {"Newton did not converge in 1 iterations", "status pass 1", "cut back to 0.0015625", "Minimum increment"});
 
   auto loop = p;
   use_loops(loop);
@@ -72,6 +74,7 @@ int main(int argc, char **argv)
   auto crushed                         = newton;
   crushed.newton.maximum_iterations    = 25;
   crushed.load_stepping                = {{1.}, {2}};
+  crushed.load_stepping.cut_back       = false;
   crushed.boundary_conditions[1].value = {"0", "0", "-4*max(t-0.5,0)-0.01*t"};
   check_words("a crushed block: the last converged state is told",
               outcome(crushed),

@@ -68,6 +68,8 @@ namespace
     print("region", condition.region);
     print("components", condition.components);
     print("value", condition.value);
+    print("active from", condition.active_from);
+    print("active until", condition.active_until);
   }
 
   void print(const ContactPairParameters &pair)
@@ -146,9 +148,14 @@ namespace
     print("augmentation factor", parameters.linear_solver.augmentation_factor);
     print("\ninterval ends", parameters.load_stepping.interval_ends);
     print("increments", parameters.load_stepping.increments);
+    print("cut back", parameters.load_stepping.cut_back);
+    print("minimum increment", parameters.load_stepping.minimum_increment);
+    print("maximum increment", parameters.load_stepping.maximum_increment);
+    print("easy iterations", parameters.load_stepping.easy_iterations);
     print("\nresults folder", parameters.output.results_folder);
     print("Write VTU", parameters.output.write_vtu);
     print("VTU interval", parameters.output.vtu_interval);
+    print("checkpoint interval", parameters.output.checkpoint_interval);
   }
 
   std::string everything(const std::string &file)

@@ -92,7 +92,7 @@ namespace
 
     BoundaryConditions conditions(const std::vector<BoundaryConditionParameters> &parameters)
     {
-      return BoundaryConditions(parameters, bodies, dof_handler, mapping, /* end_time = */ 4.);
+      return BoundaryConditions(parameters, bodies, dof_handler, mapping, {4.});
     }
 
     /// Number of prescribed dofs and the sum of their values, of each reaction region and component.

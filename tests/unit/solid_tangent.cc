@@ -99,7 +99,7 @@ namespace
       none.reinit(relevant);
       none.close();
       boundary_conditions =
-          std::make_unique<BoundaryConditions>(conditions, bodies, dof_handler, mapping, /* end_time = */ 2.);
+          std::make_unique<BoundaryConditions>(conditions, bodies, dof_handler, mapping, std::vector<double>{2.});
       materials.push_back(make_material(parameters.material));
       assembler = std::make_unique<SolidAssembler>(dof_handler, mapping, materials, boundary_conditions->loads());
       assembler->make_sparsity(K);

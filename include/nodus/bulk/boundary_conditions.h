@@ -31,16 +31,19 @@ namespace Nodus
 
     /// @throws InputError, on every rank: bad expression, a region without any node (displacement), face (traction,
     /// pressure, spring) or cell (body force), two conditions that prescribe different values for the same degree of
-    /// freedom at t = 0, end_time/2 or end_time. The predicate of a region is evaluated at nodes, at the centres of
-    /// faces and at the centres of cells, respectively; body forces ignore boundary ids.
+    /// freedom at the start, the middle or the end of the time in which both act. The predicate of a region is
+    /// evaluated at nodes, at the centres of faces and at the centres of cells, respectively; body forces ignore
+    /// boundary ids. @p interval_ends: the times at which conditions may begin or cease to act, and the last of all.
+    /// Bodies, degrees of freedom and mapping outlive the conditions.
     BoundaryConditions(const std::vector<BoundaryConditionParameters> &parameters,
                        const Bodies                                   &bodies,
                        const dealii::DoFHandler<dim>                  &dof_handler,
                        const dealii::Mapping<dim>                     &mapping,
-                       double                                          end_time);
+                       const std::vector<double>                      &interval_ends);
 
-    /// Evaluates the prescribed displacements at time @p t. Collective.
-    void set_time(double t);
+    /// Evaluates the prescribed displacements that act at time @p t. @returns whether other ones do than before: then
+    /// constraints and reaction regions are new. Collective.
+    bool set_time(double t);
 
     /// Homogeneous constraints at the prescribed degrees of freedom (and hanging nodes), locally relevant lines,
     /// closed.
@@ -58,8 +61,9 @@ namespace Nodus
       return loads_;
     }
 
-    /// Displacement conditions whose reactions are reported. A degree of freedom belongs to the first condition that
-    /// prescribes it; the sum of the residual over owned dofs and ranks is the reaction.
+    /// Displacement conditions whose reactions are reported, without degrees of freedom while they do not act. A degree
+    /// of freedom belongs to the first condition that prescribes it; the sum of the residual over owned dofs and ranks
+    /// is the reaction.
     struct ReactionRegion
     {
       std::string           name;
@@ -81,19 +85,26 @@ namespace Nodus
       double       value;     ///< at the current time
     };
     struct Held; ///< the condition and the place of an owned prescribed degree of freedom
+    /// A time in which the same displacement conditions act.
+    struct Stage
+    {
+      double            begin, end;
+      std::vector<bool> acts; ///< by condition; false for loads
+    };
 
-    void
-    add_loads(const Bodies &bodies, const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping);
-    std::map<DoFIndex, Held> find_held(const Bodies                  &bodies,
-                                       const dealii::DoFHandler<dim> &dof_handler,
-                                       const dealii::Mapping<dim>    &mapping,
-                                       double                         end_time);
-    void                     collect_prescribed(const std::map<DoFIndex, Held> &held,
-                                                const dealii::DoFHandler<dim>  &dof_handler,
-                                                const dealii::Mapping<dim>     &mapping);
-    void                     make_constraints(const dealii::DoFHandler<dim> &dof_handler);
+    void                     add_loads();
+    void                     find_stages(const std::vector<double> &interval_ends);
+    void                     enter(unsigned int stage);
+    std::map<DoFIndex, Held> find_held(const Stage &stage);
+    void                     collect_prescribed(const std::map<DoFIndex, Held> &held);
+    void                     make_constraints();
     std::string              label(unsigned int condition) const;
 
+    const Bodies                                             &bodies_;
+    const dealii::DoFHandler<dim>                            &dof_handler_;
+    const dealii::Mapping<dim>                               &mapping_;
+    std::vector<Stage>                                        stages_;
+    unsigned int                                              stage_ = 0; ///< the one at hand
     std::vector<BoundaryConditionParameters>                  parameters_;
     std::vector<std::unique_ptr<dealii::FunctionParser<dim>>> functions_;
     std::vector<Prescribed>                                   prescribed_; ///< locally relevant

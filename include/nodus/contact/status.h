@@ -150,6 +150,12 @@ namespace Nodus
     void commit(const std::vector<std::array<double, 2>> &slip);
     void roll_back();
 
+    /// What commit() kept of a site as numbers: S, S_f, mu lambda_s and the accumulated slip.
+    using Record = std::array<double, 5>;
+    Record kept(unsigned int site) const;
+    /// Goes back to a state that was kept() once; one record per site, right at owned ones. Collective.
+    void restore(std::vector<Record> records);
+
   private:
     struct State
     {

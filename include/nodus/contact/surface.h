@@ -204,7 +204,7 @@ namespace Nodus
     /// Values of a displacement-like vector (fully distributed) at all local nodes. Collective.
     void gather(const Vector &v, std::vector<Vector3> &nodal_values) const;
 
-    /// Which components of which nodes are prescribed; once after the constraints are known. Collective.
+    /// Which components of which nodes are prescribed; whenever the constraints have changed. Collective.
     void set_fixed(const dealii::AffineConstraints<double> &constraints);
     bool fixed(const unsigned int node, const unsigned int component) const
     {

@@ -72,7 +72,8 @@ namespace Nodus
         throw InputError(text);
   }
 
-  /// Creates @p folder and tries to write in it, from rank 0. Collective. @throws InputError on every rank.
+  /// Creates @p folder, tries to write in it and removes what a run that was killed left incomplete, from rank 0.
+  /// Collective. @throws InputError on every rank.
   inline void make_results_folder(const std::string &folder, MPI_Comm communicator)
   {
     std::string problem;
@@ -86,6 +87,9 @@ namespace Nodus
       else if (!std::ofstream(probe))
         problem = "cannot write in the results folder " + folder;
       std::filesystem::remove(probe, error);
+      for (const auto &entry : std::filesystem::directory_iterator(folder, error))
+        if (entry.path().extension() == ".incomplete")
+          std::filesystem::remove(entry.path(), error);
       if (!problem.empty())
         problem += "; choose another with Output/Results folder";
     }

@@ -20,7 +20,8 @@ namespace Nodus
 
     void line(const std::string &text);
 
-    void begin_increment(unsigned int increment, unsigned int n_increments, double t);
+    /// Of the increment from time @p begin to time @p end.
+    void begin_increment(unsigned int increment, double begin, double end);
     /// One row of the iteration table: loop counters side by side, norms, Krylov iterations.
     void newton_iteration(const IterationCounts      &pass,
                           unsigned int                iteration,
@@ -28,13 +29,20 @@ namespace Nodus
                           unsigned int                krylov);
     /// Statuses that changed in a status pass, or the criterion of a loop pass.
     void remark(const std::string &text);
-    void end_increment(const IterationCounts &counts, const std::vector<ContactResultants> &contact);
+    /// @p progress: part of the load path that is done now, 0 to 1.
+    void end_increment(const IterationCounts &counts, const std::vector<ContactResultants> &contact, double progress);
+
+    /// Where a run that is continued begins, for the time to go.
+    void begin_at(const double progress)
+    {
+      progress_at_start_ = progress;
+    }
 
   private:
     std::ostream                         &stream_;
     bool                                  active_;
     std::chrono::steady_clock::time_point start_, last_progress_;
-    unsigned int                          increment_ = 0, n_increments_ = 0;
+    double                                progress_at_start_ = 0.;
   };
 } // namespace Nodus
 

@@ -51,15 +51,26 @@ namespace Nodus
     /// Writes the iterations of an increment that did not converge. Collective. @throws InputError as the constructor.
     void add_failure();
 
+    struct Rows
+    {
+      std::string contact, reactions, iterations; ///< with the headers
+    };
+    const Rows &rows() const
+    {
+      return rows_;
+    }
+    /// Writes the tables as they were when they had these @p rows. Collective. @throws InputError as the constructor.
+    void continue_from(const Rows &rows);
+
   private:
-    std::string write(const std::string &name, const std::string &rows) const;
-    void        finish_iterations();
+    void write() const;
+    void write(const std::string &name, const std::string &rows) const;
+    void finish_iterations();
 
     std::string            folder_;
     MPI_Comm               communicator_;
-    bool                   writes_; ///< this rank
     std::vector<Iteration> iterations_;
-    std::string            contact_rows_, reaction_rows_, iteration_rows_;
+    Rows                   rows_;
   };
 } // namespace Nodus
 

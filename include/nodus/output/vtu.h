@@ -9,6 +9,7 @@
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/mapping.h>
 
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -31,6 +32,12 @@ namespace Nodus
 
     /// @p u has ghost entries. Collective. @throws InputError when the folder cannot be written.
     void write(unsigned int increment, double t, const Vector &u, const std::vector<ContactFields> &contact);
+
+    /// (time, file) of what was written so far, by the name of the series.
+    using Series = std::map<std::string, std::vector<std::pair<double, std::string>>>;
+    const Series &series() const;
+    /// Writes the time series as they were when they had these files. Collective. @throws InputError as write().
+    void continue_from(const Series &series);
 
   private:
     struct Implementation;

@@ -1,0 +1,84 @@
+#include <nodus/contact_problem_implementation.h>
+
+#include <sstream>
+
+namespace Nodus
+{
+  /// Increment after increment; one that fails is tried again in halves, from exactly the state before.
+  void ContactProblem::Implementation::follow_load_path()
+  {
+    const unsigned int first = path.increment();
+    console.begin_at(path.progress());
+    while (!path.finished())
+    {
+      console.begin_increment(path.increment(), path.time(), path.target());
+      impose(path.target());
+      try
+      {
+        solve_increment();
+      }
+      catch (const SolverFailure &failure)
+      {
+        std::ostringstream reason;
+        reason << "geometry pass " << pass.geometry << ", threshold pass " << pass.threshold << ", status pass "
+               << pass.status << ": " << failure.what();
+        roll_back();
+        if (!path.cut_back())
+          give_up(reason.str(), path.increment() > first);
+        console.remark(reason.str() + "; the increment is halved");
+        continue;
+      }
+      commit();
+      const unsigned int increment = path.increment();
+      path.accept(counts.newton, counts.fallbacks == 0);
+      {
+        const auto timer = profile.time(Phase::output);
+        update_results();
+        write(increment, path.finished());
+      }
+      console.end_increment(counts, resultants, path.progress());
+      if (callback)
+        callback(increment, time);
+      const unsigned int interval = parameters.output.checkpoint_interval;
+      if (interval > 0 && increment % interval == 0)
+        write_checkpoint();
+    }
+  }
+
+  /// Sets the boundary conditions of time @p t. Where a displacement was prescribed until the interval began, the force
+  /// that held it goes to zero in the course of the interval.
+  void ContactProblem::Implementation::impose(const double t)
+  {
+    time = t;
+    if (boundary_conditions->set_time(t))
+      surfaces->set_fixed(boundary_conditions->homogeneous_constraints());
+    const auto  &constraints = boundary_conditions->homogeneous_constraints();
+    const double rest        = (path.interval_end() - t) / (path.interval_end() - path.interval_begin());
+    for (const DoFIndex i : surfaces->layout().owned[0])
+      released(i) = constraints.is_constrained(i) ? 0. : rest * reaction(i);
+    released.compress(dealii::VectorOperation::insert);
+  }
+
+  /// The state is the last one that converged, in this run if @p converged_before.
+  void ContactProblem::Implementation::give_up(const std::string &reason, const bool converged_before)
+  {
+    tables->add_failure();
+    if (vtu && converged_before)
+    {
+      const auto timer = profile.time(Phase::output);
+      relevant_u       = committed.block(0);
+      vtu->write(path.increment() - 1, path.time(), relevant_u, fields);
+    }
+    std::ostringstream message;
+    message << "increment " << path.increment() << " (t = " << path.target() << "), " << reason
+            << ". The last converged state is t = " << path.time()
+            << (path.increment() > 1 ? "" : " (only convergence.csv was written)");
+    if (!parameters.load_stepping.cut_back)
+      message << ". Give more Increments, or set 'Load stepping/Cut back = true'";
+    else
+      message << ". The increment was cut back to " << path.target() - path.time()
+              << "; if the case itself is right, give a smaller 'Load stepping/Minimum increment' or more "
+                 "'Newton/Maximum iterations'";
+    throw SolverFailure(message.str());
+  }
+} // namespace Nodus

@@ -1,0 +1,324 @@
+#include <nodus/contact_problem_implementation.h>
+#include <nodus/output/complete_file.h>
+#include <nodus/signals.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+#include <deal.II/grid/cell_id.h>
+
+#include <boost/crc.hpp>
+#include <boost/serialization/map.hpp>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+// What a checkpoint holds: the state that commit() keeps, and what of the run is not in the parameters.
+
+namespace Nodus
+{
+  namespace
+  {
+    /// Shared by all ranks.
+    struct Common
+    {
+      std::map<std::string, std::string> model; ///< that the state belongs to
+      LoadStepping                       path{LoadSteppingParameters()};
+      double                             stiffness_scale = 0.;
+      Tables::Rows                       rows;
+      VtuOutput::Series                  series;
+
+      template <typename Archive>
+      void serialize(Archive &archive, const unsigned int)
+      {
+        archive &model &path &stiffness_scale &rows.contact &rows.reactions &rows.iterations &series;
+      }
+    };
+
+    std::string checksum_of(const std::string &file)
+    {
+      std::ifstream      stream(file, std::ios::binary);
+      boost::crc_32_type crc;
+      char               buffer[65536];
+      while (stream.read(buffer, sizeof buffer) || stream.gcount() > 0)
+        crc.process_bytes(buffer, stream.gcount());
+      return std::to_string(crc.checksum());
+    }
+
+    /// Names and places of files may change, their contents may not.
+    std::map<std::string, std::string> model_of(const Parameters &parameters)
+    {
+      std::map<std::string, std::string> model;
+      for (const auto &[key, value] : parameters.model())
+        if (const std::string last = key.substr(key.rfind('/') + 1); last != "Name")
+          model[key] = last == "Mesh file" && !value.empty() ? "a file with checksum " + checksum_of(value) : value;
+      return model;
+    }
+
+    std::string first_difference(const std::map<std::string, std::string> &then,
+                                 const std::map<std::string, std::string> &now)
+    {
+      for (const auto &[key, value] : now)
+        if (const auto before = then.find(key); before == then.end())
+          return "'" + key + "' did not exist then";
+        else if (before->second != value)
+          return "'" + key + "' was '" + before->second + "' and is '" + value + "' now";
+      for (const auto &[key, value] : then)
+        if (now.count(key) == 0)
+          return "'" + key + "' does not exist any more";
+      return "";
+    }
+
+    std::string name_of(const int signal)
+    {
+      return signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "signal " + std::to_string(signal);
+    }
+
+    /// State of a slave node in a checkpoint: its Status::Record, lambda, Lambda, the area that they refer to and the
+    /// two tangents that Lambda refers to. It travels as vectors like the displacement, three numbers in each.
+    constexpr unsigned int n_status       = std::tuple_size<Status::Record>::value,
+                           n_node_vectors = (n_status + 4 + 2 * dim) / dim;
+    using NodeState                       = std::array<double, dim * n_node_vectors>;
+    using NodeVectors                     = std::array<Vector, n_node_vectors>;
+
+    using Cell = dealii::DoFHandler<dim>::active_cell_iterator;
+
+    /// Names of this rank's slave faces with integration points, and of each the first of these among the sites.
+    std::map<Checkpoints::Piece::FaceKey, unsigned int> faces_with_points(const ContactSurfaces         &surfaces,
+                                                                          const dealii::DoFHandler<dim> &dof_handler)
+    {
+      std::map<std::set<DoFIndex>, unsigned int> first_point; // by the nodes of the face
+      for (unsigned int s = surfaces.n_sites(); s-- > surfaces.slave_nodes().size();)
+        if (surfaces.is_owned(s))
+        {
+          std::set<DoFIndex> nodes;
+          for (const unsigned int n : surfaces.slave_faces(surfaces.pair(s))[surfaces.point(s).face].nodes)
+            nodes.insert(surfaces.nodes()[n].dofs[0]);
+          first_point[nodes] = s;
+        }
+      std::map<Checkpoints::Piece::FaceKey, unsigned int> faces;
+      if (first_point.empty())
+        return faces;
+      const auto           &fe = dof_handler.get_fe();
+      std::vector<DoFIndex> dofs(fe.n_dofs_per_cell());
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned() && cell->at_boundary())
+        {
+          cell->get_dof_indices(dofs);
+          for (const unsigned int face : cell->face_indices())
+          {
+            std::set<DoFIndex> nodes;
+            for (unsigned int i = 0; i < dofs.size(); ++i)
+              if (fe.system_to_component_index(i).first == 0 && fe.has_support_on_face(i, face))
+                nodes.insert(dofs[i]);
+            if (const auto found = first_point.find(nodes); found != first_point.end())
+              faces[{cell->id().to_binary<dim>(), face}] = found->second;
+          }
+        }
+      return faces;
+    }
+
+    /// Number of integration points on the face of point @p first.
+    unsigned int n_points(const ContactSurfaces &surfaces, const unsigned int first)
+    {
+      unsigned int end = first;
+      while (end < surfaces.n_sites() && surfaces.pair(end) == surfaces.pair(first) &&
+             surfaces.point(end).face == surfaces.point(first).face)
+        ++end;
+      return end - first;
+    }
+  } // namespace
+
+  void ContactProblem::Implementation::write_checkpoint()
+  {
+    const auto timer = profile.time(Phase::output);
+    Common     common{model_of(parameters), path, committed_stiffness_scale, tables->rows(), {}};
+    if (vtu)
+      common.series = vtu->series();
+
+    NodeVectors owned;
+    for (Vector &v : owned)
+      v.reinit(surfaces->layout().owned[0], communicator);
+    for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
+    {
+      NodeState            state;
+      const Status::Record record     = status->kept(k);
+      const DoFIndex       multiplier = surfaces->multiplier(k);
+      double              *value      = std::copy(record.begin(), record.end(), state.begin());
+      *value++                        = committed.block(1)(multiplier);
+      for (unsigned int i = 0; i < 2; ++i)
+        *value++ = committed.block(2)(2 * multiplier + i);
+      *value++ = committed_area[k];
+      for (const Vector3 &tangent : committed_pairing[k].tangent)
+        value = std::copy(tangent.begin_raw(), tangent.end_raw(), value);
+      for (unsigned int i = 0; i < state.size(); ++i)
+        owned[i / dim](surfaces->nodes()[k].dofs[i % dim]) = state[i];
+    }
+    std::array<Vector, 2 + n_node_vectors> relevant_vectors;
+    const auto                             with_ghosts = [&](const Vector &v, Vector &relevant_v)
+    {
+      relevant_v.reinit(surfaces->layout().owned[0], relevant, communicator);
+      relevant_v = v;
+    };
+    with_ghosts(committed.block(0), relevant_vectors[0]);
+    with_ghosts(reaction, relevant_vectors[1]);
+    for (unsigned int n = 0; n < n_node_vectors; ++n)
+    {
+      owned[n].compress(dealii::VectorOperation::insert);
+      with_ghosts(owned[n], relevant_vectors[2 + n]);
+    }
+
+    Checkpoints::Piece    piece;
+    std::vector<DoFIndex> dofs(fe.n_dofs_per_cell());
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+      {
+        cell->get_dof_indices(dofs);
+        std::vector<double> values;
+        for (const Vector &v : relevant_vectors)
+          for (const DoFIndex i : dofs)
+            values.push_back(v(i));
+        // only cells with slave nodes have the state of these; tangents are never zero
+        if (std::all_of(values.begin() + 2 * dofs.size(), values.end(), [](const double v) { return v == 0.; }))
+          values.resize(2 * dofs.size());
+        // the history of the cell's material would follow here
+        piece.cells.emplace_back(cell->id().to_binary<dim>(), std::move(values));
+      }
+    for (const auto &[face, first] : faces_with_points(*surfaces, dof_handler))
+    {
+      std::vector<double> values;
+      for (unsigned int s = first; s < first + n_points(*surfaces, first); ++s)
+      {
+        const Status::Record record = status->kept(s);
+        values.insert(values.end(), record.begin(), record.end());
+      }
+      piece.faces.emplace_back(face, std::move(values));
+    }
+    checkpoints.write(path.increment() - 1, dealii::Utilities::pack(common), piece);
+  }
+
+  void ContactProblem::Implementation::read_checkpoint()
+  {
+    const auto timer = profile.time(Phase::set_up);
+    const auto found = checkpoints.find();
+    if (!found)
+    {
+      console.line("There is no checkpoint in " + parameters.output.results_folder + ": the run begins at t = 0");
+      return;
+    }
+    if (!found->remark.empty())
+      console.line("Passed over: " + found->remark);
+    const Common      common = dealii::Utilities::unpack<Common>(found->common);
+    const std::string other  = first_difference(common.model, model_of(parameters));
+    throw_on_every_rank(other.empty() ? ""
+                                      : "the checkpoint in " + parameters.output.results_folder +
+                                            " belongs to another model: " + other +
+                                            "; change it back, or begin without --restart in another Results folder",
+                        communicator);
+    path.continue_from(common.path);
+    committed_stiffness_scale = common.stiffness_scale;
+    tables->continue_from(common.rows);
+    if (vtu)
+      vtu->continue_from(common.series);
+
+    read_pieces(found->pieces);
+    paired_before = true;
+    roll_back();
+    std::ostringstream text;
+    text << "Continues after increment " << found->increment << ", t = " << path.time();
+    console.line(text.str());
+  }
+
+  /// The committed state of this rank's cells, from whatever ranks wrote them.
+  void ContactProblem::Implementation::read_pieces(const std::vector<std::filesystem::path> &pieces)
+  {
+    std::map<Checkpoints::Piece::CellKey, Cell> cells;
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        cells[cell->id().to_binary<dim>()] = cell;
+    const auto faces = faces_with_points(*surfaces, dof_handler);
+
+    NodeVectors node_vectors;
+    for (Vector &v : node_vectors)
+      v.reinit(surfaces->layout().owned[0], communicator);
+    std::vector<Vector *> vectors = {&committed.block(0), &reaction};
+    for (Vector &v : node_vectors)
+      vectors.push_back(&v);
+
+    std::vector<Status::Record> records(surfaces->n_sites());
+    std::vector<DoFIndex>       dofs(fe.n_dofs_per_cell());
+    std::size_t                 missing = cells.size() + faces.size();
+    for (const auto &file : pieces)
+    {
+      const Checkpoints::Piece piece = Checkpoints::read(file);
+      for (const auto &[key, values] : piece.cells)
+        if (const auto cell = cells.find(key); cell != cells.end())
+        {
+          --missing;
+          cell->second->get_dof_indices(dofs);
+          for (unsigned int i = 0; i < values.size(); ++i)
+            if (const DoFIndex dof = dofs[i % dofs.size()]; surfaces->layout().owned[0].is_element(dof))
+              (*vectors[i / dofs.size()])(dof) = values[i];
+        }
+      for (const auto &[key, values] : piece.faces)
+        if (const auto face = faces.find(key); face != faces.end())
+        {
+          --missing;
+          for (unsigned int i = 0; i < values.size(); ++i)
+            records[face->second + i / n_status][i % n_status] = values[i];
+        }
+    }
+    throw_on_every_rank(missing == 0 ? "" : "the checkpoint does not cover the mesh; begin without --restart",
+                        communicator);
+
+    std::vector<std::array<Vector3, 2>> tangents(surfaces->n_sites());
+    committed_area.assign(surfaces->slave_nodes().size(), 0.);
+    for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
+    {
+      NodeState state;
+      for (unsigned int i = 0; i < state.size(); ++i)
+        state[i] = node_vectors[i / dim](surfaces->nodes()[k].dofs[i % dim]);
+      std::copy_n(state.begin(), n_status, records[k].begin());
+      const double  *value           = state.data() + n_status;
+      const DoFIndex multiplier      = surfaces->multiplier(k);
+      committed.block(1)(multiplier) = *value++;
+      for (unsigned int i = 0; i < 2; ++i)
+        committed.block(2)(2 * multiplier + i) = *value++;
+      committed_area[k] = *value++;
+      for (Vector3 &tangent : tangents[k])
+        for (unsigned int c = 0; c < dim; ++c)
+          tangent[c] = *value++;
+    }
+    for (unsigned int b = 0; b < 3; ++b)
+      committed.block(b).compress(dealii::VectorOperation::insert);
+    reaction.compress(dealii::VectorOperation::insert);
+    committed_pairing.set_tangents(tangents);
+    status->restore(records);
+  }
+
+  /// Once per Newton iteration: writes a checkpoint of what converged last where a signal asks for it. @throws
+  /// Interrupted where it asks for the end.
+  void ContactProblem::Implementation::heed_signals()
+  {
+    const Signals::Request request = Signals::received(communicator);
+    if (!request.checkpoint)
+      return;
+    const bool worthwhile = path.increment() > 1;
+    if (worthwhile)
+      write_checkpoint();
+    if (request.end != 0)
+    {
+      std::ostringstream message;
+      message << "ended by " << name_of(request.end) << " in increment " << path.increment();
+      if (worthwhile)
+        message << "; --restart continues from t = " << path.time();
+      else
+        message << ": nothing had converged";
+      throw Interrupted(request.end, message.str());
+    }
+    console.remark(worthwhile ? "checkpoint written, as SIGUSR1 asked for" : "no checkpoint: nothing has converged");
+  }
+} // namespace Nodus

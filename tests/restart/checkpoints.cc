@@ -1,0 +1,177 @@
+// Which checkpoint a restart takes: the last complete one, of the same model and format, and how many are kept.
+
+#include "sliding_block.h"
+
+#include <nodus/signals.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sys/resource.h>
+
+using namespace SlidingBlock;
+namespace fs = std::filesystem;
+
+namespace
+{
+  const fs::path folder = "checkpoints_results", checkpoints = folder / "checkpoints";
+
+  /// Message of the error, or the time of the first increment.
+  std::string restart(const Parameters &p)
+  {
+    ContactProblem problem(p, world(), log());
+    std::string    first = "none";
+    problem.on_increment(
+        [&](const unsigned int increment, double)
+        {
+          if (first == "none")
+            first = "increment " + std::to_string(increment);
+        });
+    problem.restart();
+    try
+    {
+      problem.run();
+    }
+    catch (const InputError &error)
+    {
+      return error.what();
+    }
+    return first;
+  }
+
+  void expect(const std::string &what, const std::string &answer, const std::vector<std::string> &words)
+  {
+    bool all = true;
+    for (const auto &w : words)
+      all = all && answer.find(w) != std::string::npos;
+    check(what, all);
+    if (!all && root())
+      std::cout << "  " << answer << std::endl;
+  }
+
+  std::vector<std::string> present()
+  {
+    std::vector<std::string> names;
+    for (const auto &entry : fs::directory_iterator(checkpoints))
+      names.push_back(entry.path().filename());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  void put(const fs::path &from, const fs::path &to)
+  {
+    fs::remove_all(to);
+    fs::copy(from, to, fs::copy_options::recursive);
+  }
+
+  void set_first_line(const fs::path &file, const std::string &line)
+  {
+    std::ifstream     in(file);
+    std::string       old;
+    std::stringstream rest;
+    std::getline(in, old);
+    rest << in.rdbuf();
+    std::ofstream(file) << line << '\n' << rest.str();
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  Signals::install();
+  fs::remove_all(folder);
+
+  Parameters p                 = SlidingBlock::parameters(folder);
+  p.output.write_vtu           = false;
+  p.output.checkpoint_interval = 3;
+  expect("without a checkpoint it begins at the start", restart(p), {"increment 1"});
+  check("every third increment, two are kept", present() == std::vector<std::string>({"000003", "000006"}));
+
+  ContactProblem interrupted(p, world(), log());
+  interrupted.on_increment([](const unsigned int increment, double) { increment == 4 ? std::raise(SIGUSR1) : 0; });
+  interrupted.run();
+  check("one more on SIGUSR1, and the run goes on", present() == std::vector<std::string>({"000004", "000006"}));
+
+  const fs::path kept = folder / "kept";
+  put(checkpoints, kept);
+  expect("the last one is taken", restart(p), {"increment 7"});
+
+  {
+    // No file may become larger than half a piece: as on a full disk.
+    rlimit limit;
+    getrlimit(RLIMIT_FSIZE, &limit);
+    const rlimit small{fs::file_size(kept / "000006" / "piece.0000") / 2, limit.rlim_max};
+    put(kept, checkpoints);
+    fs::remove_all(checkpoints / "000006");
+    setrlimit(RLIMIT_FSIZE, &small);
+    const std::string message = restart(p);
+    setrlimit(RLIMIT_FSIZE, &limit);
+    expect("a full disk is told", message, {"cannot write", "is the disk full?"});
+    check("  and the checkpoint before is still there, alone", present() == std::vector<std::string>({"000004"}));
+  }
+
+  {
+    auto fields                  = p;
+    fields.output.write_vtu      = true;
+    fields.output.results_folder = folder / "full";
+    rlimit limit;
+    getrlimit(RLIMIT_FSIZE, &limit);
+    const rlimit small{2000, limit.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    const std::string message = restart(fields);
+    setrlimit(RLIMIT_FSIZE, &limit);
+    expect("a disk that is full before", message, {"cannot write", "bodies_0001.vtu", "is the disk full?"});
+    std::vector<std::string> left;
+    for (const auto &entry : fs::directory_iterator(folder / "full"))
+      left.push_back(entry.path().filename());
+    std::sort(left.begin(), left.end());
+    check("  leaves complete files", left == std::vector<std::string>({"contact.csv", "reactions.csv"}));
+  }
+
+  put(kept, checkpoints);
+  const fs::path piece = checkpoints / "000006" / "piece.0000";
+  fs::resize_file(piece, fs::file_size(piece) - 10);
+  expect("a truncated one is passed over", restart(p), {"increment 5"});
+
+  put(kept, checkpoints);
+  std::fstream(checkpoints / "000006" / "common", std::ios::in | std::ios::out).seekp(20).put('!');
+  expect("a changed one is passed over", restart(p), {"increment 5"});
+
+  put(kept, checkpoints);
+  fs::rename(checkpoints / "000006", checkpoints / "000006.incomplete");
+  expect("an unfinished one does not count", restart(p), {"increment 5"});
+
+  put(kept, checkpoints);
+  for (const std::string name : {"000004", "000006"})
+    fs::resize_file(checkpoints / name / "index", 30);
+  expect("nothing but damaged ones: refused", restart(p), {"no checkpoint can be used", "000004", "000006"});
+
+  put(kept, checkpoints);
+  set_first_line(checkpoints / "000006" / "index", "nodus checkpoint 999");
+  expect("another format: refused", restart(p), {"another version of nodus", "999"});
+
+  put(kept, checkpoints);
+  auto friction                                  = p;
+  friction.contact_pairs[0].friction_coefficient = 0.35;
+  expect("another friction coefficient: refused",
+         restart(friction),
+         {"another model", "'Contact pair 1/Friction coefficient' was '0.3", "is '0.35"});
+  auto mesh                          = p;
+  mesh.bodies[0].generator_arguments = "4,3,1 : 0,0,0 : 2,1,0.5 : true";
+  expect("another mesh: refused", restart(mesh), {"'Body 1/Generator arguments' was"});
+  auto load                            = p;
+  load.boundary_conditions[1].value[1] = "0.03*t";
+  expect("another load: refused", restart(load), {"'Boundary condition 2/Value' was"});
+  auto pairs = p;
+  pairs.contact_pairs.clear();
+  expect("no pair any more: refused", restart(pairs), {"Contact pair 1", "does not exist any more"});
+
+  auto allowed                        = p;
+  allowed.load_stepping.interval_ends = {0.5, 1., 1.2};
+  allowed.load_stepping.increments    = {3, 10, 2};
+  allowed.newton.maximum_iterations   = 20;
+  allowed.output.checkpoint_interval  = 0;
+  expect("other increments, a longer path, other limits: accepted", restart(allowed), {"increment 7"});
+}

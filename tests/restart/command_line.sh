@@ -1,0 +1,47 @@
+#!/bin/bash
+# nodus as a process: ends on SIGTERM and continues to the same tables; a folder that cannot be written in ends in one
+# message. Usage: command_line.sh <nodus> <prm> <empty folder>
+set -u
+nodus=$1 prm=$2 folder=$3
+rm -rf "$folder" && mkdir -p "$folder" && cd "$folder" || exit 1
+
+fail()
+{
+  echo "FAILED: $*"
+  exit 1
+}
+
+run() # <results folder> further arguments
+{
+  local results=$1
+  shift
+  $in_place "$nodus" "$prm" --set "Output/Results folder=$results" --set "Load stepping/Increments=40,60" \
+    --set "Output/VTU interval=20" "$@"
+}
+in_place=
+
+run whole > whole.log || fail "the run that is not interrupted"
+
+in_place=exec # signals are for nodus, not for a shell around it
+run parts > parts.log 2> parts.message &
+process=$!
+in_place=
+for _ in $(seq 600); do
+  [ -f parts/contact.csv ] && [ "$(wc -l < parts/contact.csv)" -gt 5 ] && break
+  sleep 0.05
+done
+kill -TERM $process || fail "it was over before the signal"
+wait $process
+[ $? = 143 ] || fail "exit code $? instead of 143"
+grep -q "^nodus: ended by SIGTERM in increment .*; --restart continues from t = " parts.message || fail "$(cat parts.message)"
+run parts --restart > restart.log || fail "restart"
+grep -q "^Continues after increment " restart.log || fail "it began anew"
+for table in contact.csv reactions.csv; do
+  cmp whole/$table parts/$table || fail "$table differs"
+done
+diff <(grep DataSet whole/bodies.pvd) <(grep DataSet parts/bodies.pvd) || fail "bodies.pvd differs"
+
+run /proc/nodus > unwritable.log 2> unwritable.message
+[ $? = 1 ] || fail "unwritable folder: exit code $?"
+grep -q "cannot create the results folder /proc/nodus.*Output/Results folder" unwritable.message || fail "$(cat unwritable.message)"
+echo "all as it should be"
