@@ -191,6 +191,7 @@ namespace Nodus
     for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
       slip.push_back(contact->slip(state, s));
     status->commit(slip);
+    solid->commit();
     committed         = solution;
     committed_pairing = pairing;
     committed_area    = weights.area();
@@ -202,6 +203,7 @@ namespace Nodus
     pairing    = committed_pairing;
     nodal_area = committed_area;
     status->roll_back();
+    solid->roll_back();
     gather_state();
   }
 } // namespace Nodus
