@@ -17,10 +17,11 @@ namespace Nodus
       void integrate(const QuadraturePoint *points,
                      const Material        &material,
                      const Lanes           *u,
-                     const History         &history,
-                     Lanes                 *force,
-                     Lanes                 *stiffness,
-                     Lanes                 &det_F) override
+                     const Lanes *,
+                     const History &history,
+                     Lanes         *force,
+                     Lanes         *stiffness,
+                     Lanes         &det_F) override
       {
         const bool         small_strain = material.small_strain();
         const unsigned int n_state      = material.n_state();

@@ -31,6 +31,7 @@ namespace Nodus
       void integrate(const QuadraturePoint *points,
                      const Material        &material,
                      const Lanes           *u,
+                     const Lanes           *u_before,
                      const History         &history,
                      Lanes                 *force,
                      Lanes                 *stiffness,
@@ -39,7 +40,11 @@ namespace Nodus
         const bool         small_strain = material.small_strain();
         const unsigned int n_state      = material.n_state();
         std::fill_n(force, dim * n_nodes, Lanes{});
-        det_F = Lanes{} + 1.;
+        det_F                   = Lanes{} + 1.;
+        const bool extrapolated = u_before && stiffness && !small_strain;
+        Lanes      dilatation[n_modes];
+        if (extrapolated)
+          extrapolate(points, u_before, u, dilatation);
         if (!set_deformation(points, small_strain, u, det_F))
           return;
 
@@ -64,8 +69,22 @@ namespace Nodus
           add_point(points[q].JxW, small_strain, q, S, stiffness ? &C : nullptr, pressure);
         }
         solve(pressure);
+        Lanes excess[n_modes] = {}; // of the pressure over that of Newton's method
+        if (extrapolated)
+        {
+          solve(dilatation);
+          for (unsigned int k = 0; k < n_modes; ++k)
+            for (unsigned int l = 0; l < n_modes; ++l)
+              excess[k] += bulk_[k][l] * (dilatation_[l] - dilatation[l]);
+          solve(excess);
+        }
         for (unsigned int q = 0; q < n_q; ++q)
-          add_force(points[q].JxW, small_strain, at_point(pressure, q), q, stiffness, force);
+        {
+          const Lanes p = at_point(pressure, q);
+          add_force(points[q].JxW, small_strain, p, q, force);
+          if (stiffness && !small_strain)
+            add_pressure(points[q].JxW, p - at_point(excess, q), q);
+        }
         if (stiffness)
           set_stiffness(stiffness);
       }
@@ -87,7 +106,7 @@ namespace Nodus
       /// Current gradients, J_, theta_ and Fbar in F_. @returns false when J or theta is not positive somewhere
       bool set_deformation(const QuadraturePoint *points, const bool small_strain, const Lanes *u, Lanes &smallest)
       {
-        Lanes dilatation[n_modes] = {};
+        std::fill_n(dilatation_, n_modes, Lanes{});
         for (unsigned int k = 0; k < n_modes; ++k)
           std::fill_n(mass_[k], n_modes, Lanes{});
         for (unsigned int q = 0; q < n_q; ++q)
@@ -105,16 +124,16 @@ namespace Nodus
           for (unsigned int k = 0; k < n_modes; ++k)
           {
             const Lanes weighted = mode_[q][k] * points[q].JxW;
-            dilatation[k] += weighted * J_[q];
+            dilatation_[k] += weighted * J_[q];
             for (unsigned int l = 0; l <= k; ++l)
               mass_[k][l] += weighted * mode_[q][l];
           }
         }
         factorise();
-        solve(dilatation);
+        solve(dilatation_);
         for (unsigned int q = 0; q < n_q; ++q)
         {
-          theta_[q] = at_point(dilatation, q);
+          theta_[q] = at_point(dilatation_, q);
           if (small_strain)
           {
             for (unsigned int i = 0; i < dim; ++i)
@@ -131,6 +150,28 @@ namespace Nodus
               F_[q][i][j] *= factor;
         }
         return true;
+      }
+
+      /// The dilatation where Newton's method for displacement, pressure and dilatation is after its last correction:
+      /// that of @p from and its derivative times the change to @p to. Right-hand side of the projection.
+      void extrapolate(const QuadraturePoint *points, const Lanes *from, const Lanes *to, Lanes (&dilatation)[n_modes])
+      {
+        std::fill_n(dilatation, n_modes, Lanes{});
+        for (unsigned int q = 0; q < n_q; ++q)
+        {
+          Lanes A[dim][dim], B[dim][dim], linear;
+          this->deformation_gradient(points[q], from, q, A);
+          this->deformation_gradient(points[q], to, q, B);
+          determinant(A, linear);
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int I = 0; I < dim; ++I)
+            {
+              const unsigned int j = (i + 1) % dim, k = (i + 2) % dim, J = (I + 1) % dim, K = (I + 2) % dim;
+              linear += (A[j][J] * A[k][K] - A[j][K] * A[k][J]) * (B[i][I] - A[i][I]);
+            }
+          for (unsigned int m = 0; m < n_modes; ++m)
+            dilatation[m] += mode_[q][m] * points[q].JxW * linear;
+        }
       }
 
       /// From gradients in X to gradients in x.
@@ -243,13 +284,8 @@ namespace Nodus
         }
       }
 
-      /// The force, and what the pressure adds to the moduli.
-      void add_force(const Lanes       &JxW,
-                     const bool         small_strain,
-                     const Lanes       &pressure,
-                     const unsigned int q,
-                     const bool         with_moduli,
-                     Lanes             *force)
+      void add_force(
+          const Lanes &JxW, const bool small_strain, const Lanes &pressure, const unsigned int q, Lanes *force) const
       {
         const Lanes(&tau)[n_pairs] = stress_[q];
         const Lanes mean           = (tau[0] + tau[1] + tau[2]) / 3.;
@@ -262,8 +298,12 @@ namespace Nodus
             force[dim * a + i] += stress[pair_index[i][0]] * gradient_[q][a][0] +
                                   stress[pair_index[i][1]] * gradient_[q][a][1] +
                                   stress[pair_index[i][2]] * gradient_[q][a][2];
-        if (!with_moduli || small_strain)
-          return;
+      }
+
+      /// What the pressure adds to the moduli: the second derivative of J.
+      void add_pressure(const Lanes &JxW, const Lanes &pressure, const unsigned int q)
+      {
+        const Lanes p = JxW * J_[q] * pressure;
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int k = 0; k < dim; ++k)
           {
@@ -374,7 +414,7 @@ namespace Nodus
       }
 
       double mode_[n_q][n_modes];
-      Lanes  mass_[n_modes][n_modes];
+      Lanes  mass_[n_modes][n_modes], dilatation_[n_modes];
       Lanes  F_[n_q][dim][dim], J_[n_q], theta_[n_q], stress_[n_q][n_pairs]; ///< stress times JxW
       /// integrals over the cell, by modes: of J grad, of the second derivative of the energy with theta and d, twice
       /// theta

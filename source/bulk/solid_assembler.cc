@@ -38,7 +38,7 @@ namespace Nodus
     FEValues<dim> volume(mapping, fe, QGauss<dim>(fe.degree + 1), update_inverse_jacobians | update_JxW_values);
     n_q = volume.n_quadrature_points;
     cell_u.resize(fe.n_dofs_per_cell());
-    for (auto *v : {&batch_u, &batch_force})
+    for (auto *v : {&batch_u, &batch_u_before, &batch_force})
       v->resize(fe.n_dofs_per_cell());
     batch_stiffness.resize(n_nodes * (n_nodes + 1) / 2 * dim * dim);
     for (auto *v : {&cell_internal, &cell_external})
@@ -102,7 +102,7 @@ namespace Nodus
     for (unsigned int i = 0; i < nodes->size(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
         dofs.push_back(dim * nodes->global(i) + c);
-    for (auto *v : {&nodal_u, &nodal_internal, &nodal_external, &nodal_rhs, &prescribed})
+    for (auto *v : {&nodal_u, &nodal_u_before, &nodal_internal, &nodal_external, &nodal_rhs, &prescribed})
       v->resize(dofs.size());
     is_prescribed.resize(dofs.size());
     current = committed;
@@ -117,13 +117,15 @@ namespace Nodus
         committed.push_back(Lanes{} + value);
   }
 
-  void SolidAssembler::Scratch::get_displacement(const Batch &batch, const std::vector<double> &nodal)
+  void SolidAssembler::Scratch::get_displacement(const Batch               &batch,
+                                                 const std::vector<double> &nodal,
+                                                 std::vector<Lanes>        &values) const
   {
     for (unsigned int v = 0; v < n_lanes; ++v)
     {
       const unsigned int *const node = cell_nodes.data() + batch.cell(v) * n_nodes;
       for (unsigned int i = 0; i < dim * n_nodes; ++i)
-        batch_u[i][v] = nodal[dim * node[i / dim] + i % dim];
+        values[i][v] = nodal[dim * node[i / dim] + i % dim];
     }
   }
 
@@ -288,13 +290,17 @@ namespace Nodus
     for (unsigned int n = 0; n < batches.size() && failure.empty(); ++n)
     {
       const Batch &batch = batches[n];
-      get_displacement(batch, nodal_u);
+      get_displacement(batch, nodal_u, batch_u);
+      const bool goes_on = tangent && iterates > 0;
+      if (goes_on)
+        get_displacement(batch, nodal_u_before, batch_u_before);
       if (tangent)
         prefetch(batch, *tangent);
       Lanes det_F;
       kernel(batch).integrate(&geometry[n * n_q],
                               material(batch),
                               batch_u.data(),
+                              goes_on ? batch_u_before.data() : nullptr,
                               {committed.data() + batch.state, current.data() + batch.state},
                               batch_force.data(),
                               tangent ? batch_stiffness.data() : nullptr,
@@ -327,7 +333,15 @@ namespace Nodus
 
     set_all();
     if (!failure.empty())
-      last_tangent = nullptr;
+    {
+      forget_last();
+      forget_iterates();
+    }
+    else if (tangent)
+    {
+      ++iterates;
+      nodal_u_before = nodal_u;
+    }
     throw_everywhere<SolverFailure>(failure, dof_handler.get_communicator());
   }
 

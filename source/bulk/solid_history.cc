@@ -18,6 +18,7 @@ namespace Nodus
 
   void SolidAssembler::commit()
   {
+    scratch_->forget_iterates();
     if (!has_history())
       return;
     scratch_->committed = scratch_->current;
@@ -26,6 +27,7 @@ namespace Nodus
 
   void SolidAssembler::roll_back()
   {
+    scratch_->forget_iterates();
     if (!has_history())
       return;
     scratch_->current = scratch_->committed;
@@ -104,7 +106,7 @@ namespace Nodus
       const auto         &batch    = s.batches[n];
       const Material     &material = s.material(batch);
       std::vector<double> state(material.n_state());
-      s.get_displacement(batch, nodal_u);
+      s.get_displacement(batch, nodal_u, s.batch_u);
       s.kernel(batch).deformation(&s.geometry[n * s.n_q], material.small_strain(), s.batch_u.data(), F.data());
       for (unsigned int v = 0; v < batch.size; ++v)
       {

@@ -1,6 +1,7 @@
-// Uniaxial stress (free lateral faces) and simple shear of each law against closed forms, relative to 1e-8, compressible
-// and nearly incompressible. J2 plasticity: monotonic, unloaded and loaded again, tabulated and exponential hardening,
-// independent of the number of steps and of rotations in between; the work of the stress is stored or dissipated.
+// Uniaxial stress (free lateral faces) and simple shear of each law against closed forms, relative to 1e-8,
+// compressible and nearly incompressible. J2 plasticity: monotonic, unloaded and loaded again, tabulated and
+// exponential hardening, independent of the number of steps and of rotations in between; the work of the stress is
+// stored or dissipated.
 
 #include <nodus/bulk/material.h>
 
@@ -86,14 +87,15 @@ namespace
     return Tensor<2, dim>({{1., gamma, 0.}, {0., 1., 0.}, {0., 0., 1.}});
   }
 
-  double shear_error(const Sample &s, const double gamma, const double xx, const double yy, const double zz, const double xy)
+  double
+  shear_error(const Sample &s, const double gamma, const double xx, const double yy, const double zz, const double xy)
   {
     const SymmetricTensor<2, dim> expected({xx, yy, zz, xy, 0., 0.});
     return (s.law->cauchy_stress(shear(gamma)) - expected).norm() / expected.norm();
   }
 
-  /// Principal stresses t of simple shear: the axes of the largest and the smallest stretch are turned by phi from x and
-  /// y, tan 2 phi = 2/gamma; the third is z.
+  /// Principal stresses t of simple shear: the axes of the largest and the smallest stretch are turned by phi from x
+  /// and y, tan 2 phi = 2/gamma; the third is z.
   double principal_shear_error(const Sample &s, const double gamma, const double (&t)[dim])
   {
     const double root = std::sqrt(4. + gamma * gamma), half = (t[0] - t[1]) / 2., mean = (t[0] + t[1]) / 2.;
@@ -134,8 +136,8 @@ namespace
         const Sample s(parameters(Law::ogden, nu));
         double       q = 0.;
         for (unsigned int i = 0; i < 3; ++i)
-          q += s.parameters.ogden_moduli[i] *
-               (std::pow(axial, s.parameters.ogden_exponents[i]) - std::pow(axial, -s.parameters.ogden_exponents[i] / 2.));
+          q += s.parameters.ogden_moduli[i] * (std::pow(axial, s.parameters.ogden_exponents[i]) -
+                                               std::pow(axial, -s.parameters.ogden_exponents[i] / 2.));
         check("Ogden", isochoric_uniaxial_error(s, axial, q));
       }
     }
@@ -150,8 +152,7 @@ namespace
         // Green strains xy g/2, yy g^2/2; sigma = F S F^T
         const Sample s(parameters(Law::st_venant_kirchhoff, nu));
         const double Szz = s.lambda * g * g / 2., Syy = Szz + s.mu * g * g, Sxy = s.mu * g;
-        check("St Venant-Kirchhoff",
-              shear_error(s, g, Szz + 2. * g * Sxy + g * g * Syy, Syy, Szz, Sxy + g * Syy));
+        check("St Venant-Kirchhoff", shear_error(s, g, Szz + 2. * g * Sxy + g * g * Syy, Syy, Szz, Sxy + g * Syy));
       }
       {
         const Sample s(parameters(Law::neo_hookean, nu));
@@ -166,8 +167,9 @@ namespace
       }
       {
         const Sample s(parameters(Law::ogden, nu));
-        const double stretch[dim] = {g / 2. + std::sqrt(1. + g * g / 4.), 1. / (g / 2. + std::sqrt(1. + g * g / 4.)), 1.};
-        double       t[dim]       = {0., 0., 0.};
+        const double stretch[dim] = {
+            g / 2. + std::sqrt(1. + g * g / 4.), 1. / (g / 2. + std::sqrt(1. + g * g / 4.)), 1.};
+        double t[dim] = {0., 0., 0.};
         for (unsigned int i = 0; i < 3; ++i)
           for (unsigned int a = 0; a < dim; ++a)
             for (unsigned int b = 0; b < dim; ++b)
@@ -209,8 +211,8 @@ namespace
     }
   };
 
-  /// Axial logarithmic strain @p strain with the plastic one @p plastic in it, free lateral faces: the Kirchhoff stress is
-  /// E (strain - plastic), the lateral strain -nu elastic - plastic/2.
+  /// Axial logarithmic strain @p strain with the plastic one @p plastic in it, free lateral faces: the Kirchhoff stress
+  /// is E (strain - plastic), the lateral strain -nu elastic - plastic/2.
   Tensor<2, dim> uniaxial_strain(const Sample &s, const double strain, const double plastic)
   {
     return uniaxial(std::exp(strain), std::exp(-s.nu * (strain - plastic) - plastic / 2.));
@@ -240,7 +242,8 @@ namespace
         path.go(uniaxial_strain(s, e, flow(e)));
       }
       const double p = flow(0.5);
-      check("uniaxial to the logarithmic strain 0.5 in " + std::to_string(n) + " steps", uniaxial_error(s, path, 0.5, p));
+      check("uniaxial to the logarithmic strain 0.5 in " + std::to_string(n) + " steps",
+            uniaxial_error(s, path, 0.5, p));
       check("equivalent plastic strain", std::abs(s.law->equivalent_plastic_strain(path.state.data()) / p - 1.));
       check("dissipation", std::abs(s.law->dissipation(path.state.data()) / (yield * p + modulus * p * p / 2.) - 1.));
       check("stored energy",
@@ -255,7 +258,8 @@ namespace
       check("loaded again, elastic", uniaxial_error(s, path, 0.45, p));
       path.go(uniaxial_strain(s, 0.6, flow(0.6)));
       check("loaded again, plastic", uniaxial_error(s, path, 0.6, flow(0.6)));
-      // reversed: the plastic strain falls while the equivalent one a goes on: E (p - e) = yield + H a, a = 2 flow(0.6) - p
+      // reversed: the plastic strain falls while the equivalent one a goes on: E (p - e) = yield + H a, a = 2 flow(0.6)
+      // - p
       const double e = 0.3, p_back = (s.E * e + yield + 2. * modulus * flow(0.6)) / (s.E + modulus);
       path.go(uniaxial_strain(s, e, p_back));
       check("reversed, plastic", uniaxial_error(s, path, e, p_back));
@@ -264,8 +268,7 @@ namespace
       // one step of simple shear: logarithmic strains asinh(g/2), its negative and 0; radial return of the Mises stress
       const double g = 0.8, e = std::asinh(g / 2.), trial = std::sqrt(3.) * 2. * s.mu * e;
       const double left = 1. - 3. * s.mu * (trial - yield) / (3. * s.mu + modulus) / trial;
-      check("one step of simple shear",
-            principal_shear_error(s, g, {2. * s.mu * left * e, -2. * s.mu * left * e, 0.}));
+      check("one step of simple shear", principal_shear_error(s, g, {2. * s.mu * left * e, -2. * s.mu * left * e, 0.}));
     }
     {
       // the exponential law and a table of it that is as fine as it needs to be; E (e - p) is the yield stress at p
@@ -287,9 +290,7 @@ namespace
       second.go(uniaxial_strain(s, p + by_table / s.E, p));
       check("tabulated hardening", uniaxial_error(s, second, p + by_table / s.E, p));
       check("its dissipation",
-            std::abs(tabulated.law->dissipation(second.state.data()) /
-                         (yield * (0.15 + 0.225 + 0.05 * 2.625)) -
-                     1.));
+            std::abs(tabulated.law->dissipation(second.state.data()) / (yield * (0.15 + 0.225 + 0.05 * 2.625)) - 1.));
       beyond.go(uniaxial_strain(s, 0.5 + 3. * yield / s.E, 0.5));
       check("behind the table", uniaxial_error(s, beyond, 0.5 + 3. * yield / s.E, 0.5));
     }
@@ -309,13 +310,10 @@ namespace
         difference = std::max(difference, std::abs(fixed.state[i] - turned.state[i]));
       check("rotations change nothing", difference, 1e-12);
       check("plastic volume is kept",
-            std::abs(determinant(SymmetricTensor<2, dim>({fixed.state[0],
-                                                          fixed.state[1],
-                                                          fixed.state[2],
-                                                          fixed.state[3],
-                                                          fixed.state[4],
-                                                          fixed.state[5]})) -
-                     1.),
+            std::abs(
+                determinant(SymmetricTensor<2, dim>(
+                    {fixed.state[0], fixed.state[1], fixed.state[2], fixed.state[3], fixed.state[4], fixed.state[5]})) -
+                1.),
             1e-12);
       // the tangent of the second step
       SymmetricTensor<2, dim> S, plus, minus;
@@ -348,17 +346,16 @@ namespace
         for (unsigned int i = 1; i <= n; ++i)
         {
           const double         t = double(i) / n;
-          const Tensor<2, dim> F({{1. + 0.3 * t, 0.2 * t, 0.}, {0., 1. - 0.2 * t * t, 0.}, {0.1 * t, 0., 1. - 0.1 * t}});
+          const Tensor<2, dim> F(
+              {{1. + 0.3 * t, 0.2 * t, 0.}, {0., 1. - 0.2 * t * t, 0.}, {0.1 * t, 0., 1. - 0.1 * t}});
           path.go(F);
           const Tensor<2, dim> P = F * Tensor<2, dim>(path.S);
           work += scalar_product(P + P_before, F - F_before) / 2.;
           P_before = P;
           F_before = F;
         }
-        error[n / 400] = std::abs((s.law->stored_energy(F_before, path.state.data()) +
-                                   s.law->dissipation(path.state.data())) /
-                                      work -
-                                  1.);
+        error[n / 400] = std::abs(
+            (s.law->stored_energy(F_before, path.state.data()) + s.law->dissipation(path.state.data())) / work - 1.);
       }
       check("work is stored or dissipated", error[1], 1e-4);
       check("its error falls with the step", error[1] / error[0], 0.6);

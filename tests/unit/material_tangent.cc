@@ -111,8 +111,8 @@ namespace
     return error;
   }
 
-  /// What the stress is the derivative of: the stored energy and, for a step with plastic flow from rest, the work of that
-  /// flow (Ortiz & Stainier, Comput. Methods Appl. Mech. Eng. 171, 1999).
+  /// What the stress is the derivative of: the stored energy and, for a step with plastic flow from rest, the work of
+  /// that flow (Ortiz & Stainier, Comput. Methods Appl. Mech. Eng. 171, 1999).
   double potential(const Nodus::Material &material, const Tensor<2, dim> &F)
   {
     SymmetricTensor<2, dim> S;

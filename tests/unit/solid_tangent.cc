@@ -1,5 +1,6 @@
-// Solid assembler: the tangent is the derivative of the forces for each law, volumetric treatment, degree and load; forces of rigid motions,
-// homogeneous deformations and loads are the exact ones; an inverted element fails on every rank and leaves no trace.
+// Solid assembler: the tangent is the derivative of the forces for each law, volumetric treatment, degree and load;
+// forces of rigid motions, homogeneous deformations and loads are the exact ones; an inverted element fails on every
+// rank and leaves no trace.
 
 #include <nodus/bulk/solid_assembler.h>
 
@@ -290,7 +291,8 @@ namespace
                                                 {"J2 plasticity", Law::j2_plasticity}};
     for (const auto &[name, law] : all)
     {
-      print("degree " + std::to_string(degree) + (treatment == Treatment::standard ? ", " : ", mean dilatation, ") + name);
+      print("degree " + std::to_string(degree) + (treatment == Treatment::standard ? ", " : ", mean dilatation, ") +
+            name);
       Model model(treated(ball(law)), degree);
       compare_tangent(model);
       if (law != Law::linear_elastic)

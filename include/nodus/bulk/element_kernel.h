@@ -31,6 +31,8 @@ namespace Nodus
     virtual ~ElementKernel() = default;
 
     /// @param points one entry for each point of the (degree+1)^3 Gauss formula
+    /// @param u_before that of the previous iterate of Newton's method, for kernels that have unknowns of their own;
+    /// null: there is none
     /// @param history not looked at for hyperelastic laws
     /// @param u displacement, @param force int P : Grad phi, both [node][component]
     /// @param stiffness d(force)/du, [node a][node b >= a][component of a][component of b]; not computed when null
@@ -38,6 +40,7 @@ namespace Nodus
     virtual void integrate(const QuadraturePoint *points,
                            const Material        &material,
                            const Lanes           *u,
+                           const Lanes           *u_before,
                            const History         &history,
                            Lanes                 *force,
                            Lanes                 *stiffness,

@@ -37,7 +37,9 @@ namespace Nodus
 
     /// As forces(), and in the same sweep the tangent K_t = d(internal - external)/du with prescribed displacements
     /// eliminated (a positive diagonal on their rows), and @p rhs = -(internal - external) - K_t b likewise, b the
-    /// inhomogeneities of @p constraints. @p tangent has the sparsity of make_sparsity() and is overwritten.
+    /// inhomogeneities of @p constraints. From the second call after commit() or roll_back() on, that of bodies with
+    /// mean dilatation is that of Newton's method with pressures (ElementKernel), equal in the limit. @p tangent has
+    /// the sparsity of make_sparsity() and is overwritten.
     void tangent(const Vector                            &u,
                  double                                   t,
                  const dealii::AffineConstraints<double> &constraints,

@@ -67,18 +67,24 @@ namespace Nodus
     {
       return *kernels[cells[batch.first].body];
     }
-    /// Sets batch_u from values at the local nodes.
-    void get_displacement(const Batch &batch, const std::vector<double> &nodal);
-    void forget_last()
+    /// Gathers values at the local nodes.
+    void get_displacement(const Batch &batch, const std::vector<double> &nodal, std::vector<Lanes> &values) const;
+    /// The next call begins a Newton iteration.
+    void forget_iterates()
+    {
+      iterates = 0;
+    }
+    unsigned int iterates = 0; ///< tangents since then
+    void         forget_last()
     {
       last_tangent = nullptr;
     }
 
     // at the local nodes
-    std::vector<double> nodal_u, nodal_internal, nodal_external, nodal_rhs, prescribed;
+    std::vector<double> nodal_u, nodal_u_before, nodal_internal, nodal_external, nodal_rhs, prescribed;
     std::vector<char>   is_prescribed;
     // of the batch at hand, as in ElementKernel::integrate()
-    std::vector<Lanes> batch_u, batch_force, batch_stiffness;
+    std::vector<Lanes> batch_u, batch_u_before, batch_force, batch_stiffness;
 
   private:
     void add_initial_states(const Material &material);
