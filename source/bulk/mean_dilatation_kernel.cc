@@ -100,6 +100,11 @@ namespace Nodus
           std::copy_n(&F_[q][0][0], dim * dim, &F[q].F[0][0]);
       }
 
+      bool has_own_unknowns() const override
+      {
+        return true;
+      }
+
     private:
       using Base::gradient_, Base::moduli_;
 

@@ -291,7 +291,7 @@ namespace Nodus
     {
       const Batch &batch = batches[n];
       get_displacement(batch, nodal_u, batch_u);
-      const bool goes_on = tangent && iterates > 0;
+      const bool goes_on = tangent && iterates > 0 && kernel(batch).has_own_unknowns();
       if (goes_on)
         get_displacement(batch, nodal_u_before, batch_u_before);
       if (tangent)

@@ -46,6 +46,12 @@ namespace Nodus
                            Lanes                 *stiffness,
                            Lanes                 &det_F) = 0;
 
+    /// Whether integrate() looks at the previous iterate.
+    virtual bool has_own_unknowns() const
+    {
+      return false;
+    }
+
     struct DeformationGradient
     {
       Lanes F[dim][dim];
