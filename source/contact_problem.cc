@@ -81,7 +81,11 @@ namespace Nodus
     dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
     boundary_conditions = std::make_unique<BoundaryConditions>(
         parameters.boundary_conditions, bodies, dof_handler, *mapping, parameters.load_stepping.interval_ends);
-    solid    = std::make_unique<SolidAssembler>(dof_handler, *mapping, materials, boundary_conditions->loads());
+    std::vector<BodyParameters::VolumetricTreatment> treatments;
+    for (const auto &body : parameters.bodies)
+      treatments.push_back(body.volumetric_treatment);
+    solid =
+        std::make_unique<SolidAssembler>(dof_handler, *mapping, materials, boundary_conditions->loads(), treatments);
     surfaces = std::make_unique<ContactSurfaces>(parameters.contact_pairs, bodies, dof_handler, *mapping);
     surfaces->set_fixed(boundary_conditions->homogeneous_constraints());
     status = std::make_unique<Status>(
@@ -192,7 +196,7 @@ namespace Nodus
           make_linear_solver(parameters.linear_solver, surfaces->layout(), node_positions(dof_handler, *mapping));
       linear_solver->set_profile(&profile);
       if (parameters.output.write_vtu)
-        vtu = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, *mapping, materials);
+        vtu = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, *mapping, *solid);
       tables = std::make_unique<Tables>(parameters.output.results_folder, communicator);
     }
     if (restart)

@@ -194,6 +194,7 @@ namespace Nodus
     for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
       slip.push_back(contact->slip(state, s));
     status->commit(slip);
+    solid->commit();
     committed                 = solution;
     committed_pairing         = pairing;
     committed_area            = weights.area();
@@ -214,6 +215,7 @@ namespace Nodus
     nodal_area      = committed_area;
     stiffness_scale = committed_stiffness_scale;
     status->roll_back();
+    solid->roll_back();
     gather_state();
   }
 } // namespace Nodus

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <numeric>
 #include <set>
 #include <sstream>
 
@@ -35,15 +37,90 @@ namespace Nodus
                           (timed ? ", t" : "") + ", constants pi");
     }
 
+    void check_ogden(const Section &section, const MaterialParameters &material)
+    {
+      const auto &moduli = material.ogden_moduli, &exponents = material.ogden_exponents;
+      section.require(!moduli.empty(), "Ogden moduli", "is missing; give one number for each term");
+      section.require(exponents.size() == moduli.size(),
+                      "Ogden exponents",
+                      "has " + std::to_string(exponents.size()) + " entries for " + std::to_string(moduli.size()) +
+                          " entries of Ogden moduli; give one for each term");
+      section.require(std::count(exponents.begin(), exponents.end(), 0.) == 0,
+                      "Ogden exponents",
+                      "must not be 0; remove such a term");
+      section.require(
+          std::inner_product(moduli.begin(), moduli.end(), exponents.begin(), 0.) > 0.,
+          "Ogden moduli",
+          "times the exponents give a shear modulus that is not > 0; a modulus has the sign of its exponent");
+    }
+
+    void check_hardening(const Section &section, const MaterialParameters &material)
+    {
+      const auto &strains = material.hardening_strains, &stresses = material.hardening_stresses;
+      if (!strains.empty() || !stresses.empty())
+      {
+        section.require(material.yield_stress == 0. && material.hardening_modulus == 0. &&
+                            material.saturation_stress == 0. && material.saturation_rate == 0.,
+                        "Hardening strains",
+                        "is a table besides Yield stress, Hardening modulus or Saturation; remove one of the two");
+        section.require(strains.size() == stresses.size(),
+                        "Hardening stresses",
+                        "has " + std::to_string(stresses.size()) + " entries for " + std::to_string(strains.size()) +
+                            " entries of Hardening strains; give one for each");
+        section.require(strains[0] == 0. &&
+                            std::adjacent_find(strains.begin(), strains.end(), std::greater_equal<>()) == strains.end(),
+                        "Hardening strains",
+                        "must begin with 0 and increase");
+        section.require(stresses[0] > 0. &&
+                            std::adjacent_find(stresses.begin(), stresses.end(), std::greater<>()) == stresses.end(),
+                        "Hardening stresses",
+                        "must be > 0 and must not decrease; softening would depend on the mesh");
+        return;
+      }
+      section.require(material.yield_stress > 0., "Yield stress", "must be given and > 0, or a hardening table");
+      section.require((material.saturation_stress > 0.) == (material.saturation_rate > 0.),
+                      "Saturation stress",
+                      "and Saturation rate go together; give both or none");
+      section.require(material.saturation_stress == 0. || material.saturation_stress >= material.yield_stress,
+                      "Saturation stress",
+                      "must not be below Yield stress; softening would depend on the mesh");
+    }
+
     void check(const Section &section, const MaterialParameters &material)
     {
-      section.require(material.youngs_modulus > 0., "Young's modulus", "must be given and > 0");
-      section.require(material.poissons_ratio > -1. && material.poissons_ratio < 0.5,
-                      "Poisson's ratio",
-                      "must be > -1 and < 0.5; for nearly incompressible material take 0.49");
+      using Law = MaterialParameters::Law;
+      section.require(
+          material.poissons_ratio > -1. && material.poissons_ratio < 0.5,
+          "Poisson's ratio",
+          "must be > -1 and < 0.5; for nearly incompressible material take 0.499 and 'Volumetric treatment = "
+          "mean dilatation'");
       section.require(material.mooney_rivlin_ratio == 0. || material.law == MaterialParameters::Law::mooney_rivlin,
                       "Mooney-Rivlin ratio",
                       "has no effect on this law; remove it or set Law = Mooney-Rivlin");
+      if (material.law == Law::ogden)
+      {
+        section.require(material.youngs_modulus == 0.,
+                        "Young's modulus",
+                        "follows from the moduli and exponents of Ogden; remove it");
+        check_ogden(section, material);
+      }
+      else
+      {
+        section.require(material.youngs_modulus > 0., "Young's modulus", "must be given and > 0");
+        for (const auto &[key, values] : {std::make_pair("Ogden moduli", &material.ogden_moduli),
+                                          std::make_pair("Ogden exponents", &material.ogden_exponents)})
+          section.require(values->empty(), key, "has no effect on this law; remove it or set Law = Ogden");
+      }
+      if (material.law == Law::j2_plasticity)
+        check_hardening(section, material);
+      else
+        for (const auto &[key, given] : {std::make_pair("Yield stress", material.yield_stress != 0.),
+                                         std::make_pair("Hardening modulus", material.hardening_modulus != 0.),
+                                         std::make_pair("Saturation stress", material.saturation_stress != 0.),
+                                         std::make_pair("Saturation rate", material.saturation_rate != 0.),
+                                         std::make_pair("Hardening strains", !material.hardening_strains.empty()),
+                                         std::make_pair("Hardening stresses", !material.hardening_stresses.empty())})
+          section.require(!given, key, "has no effect on this law; remove it or set Law = J2 plasticity");
     }
 
     void check(const Section &section, const BodyParameters &body)

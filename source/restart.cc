@@ -171,8 +171,10 @@ namespace Nodus
       with_ghosts(owned[n], relevant_vectors[2 + n]);
     }
 
-    Checkpoints::Piece    piece;
-    std::vector<DoFIndex> dofs(fe.n_dofs_per_cell());
+    Checkpoints::Piece               piece;
+    std::vector<std::vector<double>> histories = solid->history();
+    unsigned int                     n_cells   = 0;
+    std::vector<DoFIndex>            dofs(fe.n_dofs_per_cell());
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
       {
@@ -184,8 +186,10 @@ namespace Nodus
         // only cells with slave nodes have the state of these; tangents are never zero
         if (std::all_of(values.begin() + 2 * dofs.size(), values.end(), [](const double v) { return v == 0.; }))
           values.resize(2 * dofs.size());
-        // the history of the cell's material would follow here
         piece.cells.emplace_back(cell->id().to_binary<dim>(), std::move(values));
+        if (!histories[n_cells].empty())
+          piece.histories.emplace_back(cell->id().to_binary<dim>(), std::move(histories[n_cells]));
+        ++n_cells;
       }
     for (const auto &[face, first] : faces_with_points(*surfaces, dof_handler))
     {
@@ -235,11 +239,15 @@ namespace Nodus
   /// The committed state of this rank's cells, from whatever ranks wrote them.
   void ContactProblem::Implementation::read_pieces(const std::vector<std::filesystem::path> &pieces)
   {
-    std::map<Checkpoints::Piece::CellKey, Cell> cells;
+    std::map<Checkpoints::Piece::CellKey, std::pair<Cell, std::size_t>> cells; // and the number of owned ones before
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
-        cells[cell->id().to_binary<dim>()] = cell;
-    const auto faces = faces_with_points(*surfaces, dof_handler);
+      {
+        const std::size_t n                = cells.size();
+        cells[cell->id().to_binary<dim>()] = {cell, n};
+      }
+    std::vector<std::vector<double>> histories(cells.size());
+    const auto                       faces = faces_with_points(*surfaces, dof_handler);
 
     NodeVectors node_vectors;
     for (Vector &v : node_vectors)
@@ -258,11 +266,14 @@ namespace Nodus
         if (const auto cell = cells.find(key); cell != cells.end())
         {
           --missing;
-          cell->second->get_dof_indices(dofs);
+          cell->second.first->get_dof_indices(dofs);
           for (unsigned int i = 0; i < values.size(); ++i)
             if (const DoFIndex dof = dofs[i % dofs.size()]; surfaces->layout().owned[0].is_element(dof))
               (*vectors[i / dofs.size()])(dof) = values[i];
         }
+      for (const auto &[key, values] : piece.histories)
+        if (const auto cell = cells.find(key); cell != cells.end())
+          histories[cell->second.second] = values;
       for (const auto &[key, values] : piece.faces)
         if (const auto face = faces.find(key); face != faces.end())
         {
@@ -273,6 +284,7 @@ namespace Nodus
     }
     throw_on_every_rank(missing == 0 ? "" : "the checkpoint does not cover the mesh; begin without --restart",
                         communicator);
+    solid->set_history(histories);
 
     std::vector<std::array<Vector3, 2>> tangents(surfaces->n_sites());
     committed_area.assign(surfaces->slave_nodes().size(), 0.);

@@ -37,16 +37,34 @@ namespace Nodus
       linear_elastic,
       st_venant_kirchhoff,
       neo_hookean,
-      mooney_rivlin
+      mooney_rivlin,
+      ogden,
+      j2_plasticity
     };
     Law    law                 = Law::neo_hookean;
-    double youngs_modulus      = 0.;  ///< initial E > 0 [pressure], to be given
+    double youngs_modulus      = 0.;  ///< initial E > 0 [pressure], to be given; Ogden: follows from the moduli
     double poissons_ratio      = 0.3; ///< initial nu [-], in (-1, 1/2)
     double mooney_rivlin_ratio = 0.;  ///< c01/c10 >= 0 (Mooney-Rivlin only)
+
+    std::vector<double> ogden_moduli;    ///< mu_i [pressure] of the terms mu_i/alpha_i (...)
+    std::vector<double> ogden_exponents; ///< alpha_i [-], as many
+
+    /// J2 plasticity: sigma_y(a) = yield + modulus a + (saturation - yield) (1 - exp(-rate a)), or the table.
+    double              yield_stress      = 0.; ///< initial, > 0 [pressure]
+    double              hardening_modulus = 0.; ///< [pressure]
+    double              saturation_stress = 0.; ///< >= yield stress [pressure]; 0: none
+    double              saturation_rate   = 0.; ///< [-]
+    std::vector<double> hardening_strains;      ///< equivalent plastic strains from 0, increasing [-]
+    std::vector<double> hardening_stresses;     ///< yield stresses at these, not decreasing [pressure]
   };
 
   struct BodyParameters
   {
+    enum class VolumetricTreatment
+    {
+      standard,
+      mean_dilatation
+    };
     std::string               name;
     std::string               mesh_file;           ///< resolved against the folder of the .prm file
     std::vector<unsigned int> volume_ids;          ///< physical volumes taken from the file; empty = all
@@ -56,7 +74,8 @@ namespace Nodus
     Vector3                   rotation_axis; ///< with rotation_angle in degrees; about the origin
     double                    rotation_angle = 0.;
     Vector3                   translation; ///< applied after scale and rotation [length]
-    unsigned int              global_refinement = 0;
+    unsigned int              global_refinement    = 0;
+    VolumetricTreatment       volumetric_treatment = VolumetricTreatment::standard;
     MaterialParameters        material;
   };
 

@@ -1,20 +1,38 @@
+#include <nodus/bulk/j2_plasticity.h>
 #include <nodus/bulk/linear_elastic.h>
 #include <nodus/bulk/material.h>
 #include <nodus/bulk/mooney_rivlin.h>
 #include <nodus/bulk/neo_hookean.h>
+#include <nodus/bulk/ogden.h>
 #include <nodus/bulk/st_venant_kirchhoff.h>
 
 namespace Nodus
 {
   using namespace dealii;
 
-  SymmetricTensor<2, dim> Material::cauchy_stress(const Tensor<2, dim> &F) const
+  SymmetricTensor<2, dim> Material::cauchy_stress(const Tensor<2, dim> &F, const double *const state) const
   {
     SymmetricTensor<2, dim> S;
-    evaluate(F, S, nullptr);
+    std::vector<double>     unchanged(n_state());
+    if (state)
+      update(F, state, unchanged.data(), S, nullptr);
+    else
+      evaluate(F, S, nullptr);
     if (small_strain())
       return S;
     return symmetrize(F * Tensor<2, dim>(S) * transpose(F)) / determinant(F);
+  }
+
+  void Material::update(
+      const Tensor<2, dim> &F, const double *, double *, SymmetricTensor<2, dim> &S, SymmetricTensor<4, dim> *C) const
+  {
+    evaluate(F, S, C);
+  }
+
+  void Material::update_lanes(
+      const Lanes (&F)[dim][dim], const Lanes *, Lanes *, Lanes (&S)[n_pairs], Lanes (*C)[n_pairs][n_pairs]) const
+  {
+    evaluate_lanes(F, S, C);
   }
 
   void Material::evaluate_lanes(const Lanes (&F)[dim][dim], Lanes (&S)[n_pairs], Lanes (*C)[n_pairs][n_pairs]) const
@@ -56,7 +74,8 @@ namespace Nodus
   std::unique_ptr<Material> make_material(const MaterialParameters &parameters)
   {
     const double E = parameters.youngs_modulus, nu = parameters.poissons_ratio;
-    if (!(E > 0.) || !(nu > -1. && nu < 0.5) || !(parameters.mooney_rivlin_ratio >= 0.))
+    const bool   ogden = parameters.law == MaterialParameters::Law::ogden; // E follows from the moduli
+    if (!(E > 0. || ogden) || !(nu > -1. && nu < 0.5) || !(parameters.mooney_rivlin_ratio >= 0.))
       throw InputError("Material: Young's modulus " + std::to_string(E) + ", Poisson's ratio " + std::to_string(nu) +
                        ", Mooney-Rivlin ratio " + std::to_string(parameters.mooney_rivlin_ratio) +
                        "; needed are E > 0, -1 < nu < 0.5 and a ratio >= 0");
@@ -70,6 +89,10 @@ namespace Nodus
         return std::make_unique<NeoHookean>(parameters);
       case MaterialParameters::Law::mooney_rivlin:
         return std::make_unique<MooneyRivlin>(parameters);
+      case MaterialParameters::Law::ogden:
+        return std::make_unique<Ogden>(parameters);
+      case MaterialParameters::Law::j2_plasticity:
+        return std::make_unique<J2Plasticity>(parameters);
     }
     throw InputError("Material: unknown law");
   }

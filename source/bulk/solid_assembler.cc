@@ -1,6 +1,4 @@
-#include <nodus/bulk/element_kernel.h>
-#include <nodus/bulk/loads.h>
-#include <nodus/bulk/solid_assembler.h>
+#include <nodus/bulk/solid_assembler_scratch.h>
 #include <nodus/bulk/throw_everywhere.h>
 
 #include <deal.II/base/mpi.h>
@@ -9,96 +7,38 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <sstream>
 
 namespace Nodus
 {
   using namespace dealii;
-
-  /// Every rank integrates all cells around its nodes, those of its neighbours too: nothing has to be sent.
-  struct SolidAssembler::Scratch
-  {
-    Scratch(const DoFHandler<dim>                        &dof_handler,
-            const Mapping<dim>                           &mapping,
-            const std::vector<std::unique_ptr<Material>> &materials,
-            std::vector<BoundaryConditions::Load>        &loads);
-
-    void make_positions(NodeMatrix &tangent);
-    void sweep(const Vector                    &u,
-               double                           t,
-               Vector                          &internal,
-               Vector                          &external,
-               const AffineConstraints<double> *constraints,
-               NodeMatrix                      *tangent,
-               Vector                          *rhs);
-
-    const DoFHandler<dim>                        &dof_handler;
-    const std::vector<std::unique_ptr<Material>> &materials;
-    std::unique_ptr<ElementKernel>                kernel;
-    Loads                                         loads;
-    unsigned int                                  n_nodes, n_q; ///< per cell
-
-    struct Cell
-    {
-      Point         centre;
-      unsigned char body;
-    };
-    std::vector<Cell> cells;
-    /// Consecutive cells of one body: one in each lane, lanes that are left repeat the last.
-    struct Batch
-    {
-      unsigned int first, size;
-      unsigned int cell(const unsigned int lane) const
-      {
-        return first + std::min(lane, size - 1);
-      }
-    };
-    std::vector<Batch>                          batches;
-    std::vector<ElementKernel::QuadraturePoint> geometry; ///< [batch][point]
-    std::shared_ptr<const NodeMap>              nodes;
-    std::vector<unsigned int>                   cell_nodes; ///< [cell][node], local numbers
-    std::vector<DoFIndex>                       dofs;       ///< of the local nodes
-    std::vector<NodeMatrix::Position>           positions;  ///< [cell][node a][node b >= a]
-
-  private:
-    bool is_last(const Vector &u, double t, const AffineConstraints<double> *constraints, NodeMatrix *tangent);
-    void note_prescribed(const AffineConstraints<double> *constraints);
-    void prefetch(const Batch &batch, NodeMatrix &tangent) const;
-    /// The cell in @p lane of the batch at hand.
-    void add_loads(unsigned int cell, unsigned int lane, bool with_tangent);
-    void eliminate_prescribed(unsigned int cell, unsigned int lane);
-    void scatter(unsigned int cell, unsigned int lane, NodeMatrix &tangent) const;
-    /// Entry of the stiffness: node a, component i; node b, component k.
-    double &entry(unsigned int a, unsigned int i, unsigned int b, unsigned int k, unsigned int lane);
-
-    std::vector<double> last_values; ///< displacement, time and prescribed displacements of the last sweep
-    NodeMatrix         *last_tangent = nullptr;
-    // at the local nodes
-    std::vector<double> nodal_u, nodal_internal, nodal_external, nodal_rhs, prescribed;
-    std::vector<char>   is_prescribed;
-    // of the batch at hand, as in ElementKernel::integrate()
-    std::vector<Lanes> batch_u, batch_force, batch_stiffness;
-    // of a cell with loads
-    std::vector<double>    cell_u;
-    dealii::Vector<double> cell_internal, cell_external;
-    FullMatrix<double>     cell_tangent;
-  };
+  using VolumetricTreatment = BodyParameters::VolumetricTreatment;
 
   SolidAssembler::Scratch::Scratch(const DoFHandler<dim>                        &dof_handler,
                                    const Mapping<dim>                           &mapping,
                                    const std::vector<std::unique_ptr<Material>> &materials,
-                                   std::vector<BoundaryConditions::Load>        &body_loads)
+                                   std::vector<BoundaryConditions::Load>        &body_loads,
+                                   const std::vector<VolumetricTreatment>       &treatments)
       : dof_handler(dof_handler)
       , materials(materials)
-      , kernel(ElementKernel::make(dof_handler.get_fe()))
       , loads(dof_handler, mapping, materials, body_loads)
       , n_nodes(dof_handler.get_fe().n_dofs_per_cell() / dim)
   {
-    const auto   &fe = dof_handler.get_fe();
+    const auto                                                   &fe = dof_handler.get_fe();
+    std::map<VolumetricTreatment, std::shared_ptr<ElementKernel>> kernel_of;
+    for (unsigned int body = 0; body < materials.size(); ++body)
+    {
+      const auto treatment = treatments.empty() ? VolumetricTreatment::standard : treatments[body];
+      auto      &kernel    = kernel_of[treatment];
+      if (!kernel)
+        kernel = ElementKernel::make(fe, treatment);
+      kernels.push_back(kernel);
+    }
     FEValues<dim> volume(mapping, fe, QGauss<dim>(fe.degree + 1), update_inverse_jacobians | update_JxW_values);
     n_q = volume.n_quadrature_points;
     cell_u.resize(fe.n_dofs_per_cell());
-    for (auto *v : {&batch_u, &batch_force})
+    for (auto *v : {&batch_u, &batch_u_before, &batch_force})
       v->resize(fe.n_dofs_per_cell());
     batch_stiffness.resize(n_nodes * (n_nodes + 1) / 2 * dim * dim);
     for (auto *v : {&cell_internal, &cell_external})
@@ -109,6 +49,7 @@ namespace Nodus
     std::vector<DoFIndex> cell_dofs(fe.n_dofs_per_cell()), global_nodes, ghosts;
     const std::size_t     n_cells = dof_handler.get_triangulation().n_active_cells();
     // the largest arrays: growing them would take twice their memory
+    number_of.resize(n_cells, numbers::invalid_unsigned_int);
     geometry.reserve(n_q * (n_cells / n_lanes + materials.size()));
     global_nodes.reserve(n_nodes * n_cells);
     for (const auto &cell : dof_handler.active_cell_iterators())
@@ -116,7 +57,8 @@ namespace Nodus
       if (cell->is_artificial())
         continue;
       cell->get_dof_indices(cell_dofs);
-      if (std::none_of(cell_dofs.begin(), cell_dofs.end(), [&](const DoFIndex i) { return owned.is_element(i); }))
+      if (!cell->is_locally_owned() &&
+          std::none_of(cell_dofs.begin(), cell_dofs.end(), [&](const DoFIndex i) { return owned.is_element(i); }))
         continue;
       for (unsigned int a = 0; a < n_nodes; ++a)
       {
@@ -132,8 +74,9 @@ namespace Nodus
         AssertThrow(cell->at_boundary(face) || !cell->neighbor_is_coarser(face), ExcNotImplemented());
       if (batches.empty() || batches.back().size == n_lanes || cells.back().body != cell->material_id())
       {
-        batches.push_back({static_cast<unsigned int>(cells.size()), 0});
+        batches.push_back({static_cast<unsigned int>(cells.size()), 0, committed.size()});
         geometry.resize(geometry.size() + n_q);
+        add_initial_states(*materials[cell->material_id()]);
       }
       const unsigned int lane = batches.back().size++;
       volume.reinit(cell);
@@ -148,7 +91,8 @@ namespace Nodus
           point.JxW[v] = volume.JxW(q);
         }
       }
-      cells.push_back({cell->center(), static_cast<unsigned char>(cell->material_id())});
+      cells.push_back({cell->center(), static_cast<unsigned char>(cell->material_id()), cell->is_locally_owned()});
+      number_of[cell->active_cell_index()] = cells.size() - 1;
       loads.add_cell(cell);
     }
     nodes = std::make_shared<NodeMap>(owned, std::move(ghosts), dof_handler.get_communicator());
@@ -158,9 +102,31 @@ namespace Nodus
     for (unsigned int i = 0; i < nodes->size(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
         dofs.push_back(dim * nodes->global(i) + c);
-    for (auto *v : {&nodal_u, &nodal_internal, &nodal_external, &nodal_rhs, &prescribed})
+    for (auto *v : {&nodal_u, &nodal_u_before, &nodal_internal, &nodal_external, &nodal_rhs, &prescribed})
       v->resize(dofs.size());
     is_prescribed.resize(dofs.size());
+    current = committed;
+  }
+
+  void SolidAssembler::Scratch::add_initial_states(const Material &material)
+  {
+    std::vector<double> initial(material.n_state());
+    material.set_initial(initial.data());
+    for (unsigned int q = 0; q < n_q; ++q)
+      for (const double value : initial)
+        committed.push_back(Lanes{} + value);
+  }
+
+  void SolidAssembler::Scratch::get_displacement(const Batch               &batch,
+                                                 const std::vector<double> &nodal,
+                                                 std::vector<Lanes>        &values) const
+  {
+    for (unsigned int v = 0; v < n_lanes; ++v)
+    {
+      const unsigned int *const node = cell_nodes.data() + batch.cell(v) * n_nodes;
+      for (unsigned int i = 0; i < dim * n_nodes; ++i)
+        values[i][v] = nodal[dim * node[i / dim] + i % dim];
+    }
   }
 
   void SolidAssembler::Scratch::make_positions(NodeMatrix &tangent)
@@ -324,21 +290,21 @@ namespace Nodus
     for (unsigned int n = 0; n < batches.size() && failure.empty(); ++n)
     {
       const Batch &batch = batches[n];
-      for (unsigned int v = 0; v < n_lanes; ++v)
-      {
-        const unsigned int *const node = cell_nodes.data() + batch.cell(v) * n_nodes;
-        for (unsigned int i = 0; i < dim * n_nodes; ++i)
-          batch_u[i][v] = nodal_u[dim * node[i / dim] + i % dim];
-      }
+      get_displacement(batch, nodal_u, batch_u);
+      const bool goes_on = tangent && iterates > 0 && kernel(batch).has_own_unknowns();
+      if (goes_on)
+        get_displacement(batch, nodal_u_before, batch_u_before);
       if (tangent)
         prefetch(batch, *tangent);
       Lanes det_F;
-      kernel->integrate(&geometry[n * n_q],
-                        *materials[cells[batch.first].body],
-                        batch_u.data(),
-                        batch_force.data(),
-                        tangent ? batch_stiffness.data() : nullptr,
-                        det_F);
+      kernel(batch).integrate(&geometry[n * n_q],
+                              material(batch),
+                              batch_u.data(),
+                              goes_on ? batch_u_before.data() : nullptr,
+                              {committed.data() + batch.state, current.data() + batch.state},
+                              batch_force.data(),
+                              tangent ? batch_stiffness.data() : nullptr,
+                              det_F);
       for (unsigned int v = 0; v < batch.size && failure.empty(); ++v)
         if (!(det_F[v] > 0.))
         {
@@ -367,15 +333,24 @@ namespace Nodus
 
     set_all();
     if (!failure.empty())
-      last_tangent = nullptr;
+    {
+      forget_last();
+      forget_iterates();
+    }
+    else if (tangent)
+    {
+      ++iterates;
+      nodal_u_before = nodal_u;
+    }
     throw_everywhere<SolverFailure>(failure, dof_handler.get_communicator());
   }
 
   SolidAssembler::SolidAssembler(const DoFHandler<dim>                        &dof_handler,
                                  const Mapping<dim>                           &mapping,
                                  const std::vector<std::unique_ptr<Material>> &materials,
-                                 std::vector<BoundaryConditions::Load>        &loads)
-      : scratch_(std::make_unique<Scratch>(dof_handler, mapping, materials, loads))
+                                 std::vector<BoundaryConditions::Load>        &loads,
+                                 const std::vector<VolumetricTreatment>       &treatments)
+      : scratch_(std::make_unique<Scratch>(dof_handler, mapping, materials, loads, treatments))
   {
   }
 

@@ -132,8 +132,14 @@ namespace Nodus
       unsigned int     column_, row_ = 0;
     };
 
-    const std::vector<Field> body_fields = {
-        {"displacement", dim}, {"cauchy_stress", dim *dim}, {"von_mises", 1}, {"body", 1}};
+    /// @param plastic some body has an equivalent plastic strain
+    std::vector<Field> body_fields(const bool plastic)
+    {
+      std::vector<Field> fields = {{"displacement", dim}, {"cauchy_stress", dim * dim}, {"von_mises", 1}, {"body", 1}};
+      if (plastic)
+        fields.push_back({"PEEQ", 1});
+      return fields;
+    }
 
     const std::vector<Field> contact_fields = {{"CPRESS", 1},
                                                {"COPEN", 1},
@@ -153,7 +159,8 @@ namespace Nodus
                                                {"cycle_period", 1},
                                                {"contradiction", 1}};
 
-    /// Where the six components of a symmetric tensor live in two vectors of three components per node.
+    /// Where the six components of a symmetric tensor live in two vectors of three components per node. A third vector
+    /// has the equivalent plastic strain in its first component.
     constexpr unsigned int stress_row[2][dim]    = {{0, 1, 2}, {1, 0, 0}};
     constexpr unsigned int stress_column[2][dim] = {{0, 1, 2}, {2, 2, 1}};
 
@@ -181,11 +188,11 @@ namespace Nodus
 
   struct VtuOutput::Implementation
   {
-    std::string                                   folder;
-    const Bodies                                 &bodies;
-    const DoFHandler<dim>                        &dof_handler;
-    const Mapping<dim>                           &mapping;
-    const std::vector<std::unique_ptr<Material>> &materials;
+    std::string            folder;
+    const Bodies          &bodies;
+    const DoFHandler<dim> &dof_handler;
+    const Mapping<dim>    &mapping;
+    const SolidAssembler  &solid;
 
     MPI_Comm     communicator = bodies.triangulation().get_communicator();
     unsigned int rank         = Utilities::MPI::this_mpi_process(communicator);
@@ -194,22 +201,24 @@ namespace Nodus
 
     Series written = {};
 
-    std::array<Vector, 2> nodal_stress(const Vector &u) const;
-    void                  add_bodies(const Vector &u, Output<dim> &output) const;
-    void                  add_contact(const std::vector<ContactFields> &contact, Output<dim - 1> &output) const;
+    std::vector<Vector> nodal_values(const Vector &u) const;
+    void                add_bodies(const Vector &u, Output<dim> &output) const;
+    void                add_contact(const std::vector<ContactFields> &contact, Output<dim - 1> &output) const;
     template <int patch_dim>
     void        write(const std::string &series, unsigned int increment, double t, const Output<patch_dim> &output);
     std::string write_record(const std::string &series) const;
   };
 
-  /// Cauchy stress at the nodes: lumped-mass L2 projection, that is the average of the integration points weighted
-  /// with the shape functions. The bodies share no nodes, so nothing is smeared from one body into the other.
-  std::array<Vector, 2> VtuOutput::Implementation::nodal_stress(const Vector &u) const
+  /// Cauchy stress and plastic strain at the nodes: lumped-mass L2 projection, that is the average of the integration
+  /// points weighted with the shape functions. The bodies share no nodes, so nothing is smeared from one body into the
+  /// other.
+  std::vector<Vector> VtuOutput::Implementation::nodal_values(const Vector &u) const
   {
     const auto       &fe    = dof_handler.get_fe();
     const auto       &owned = dof_handler.locally_owned_dofs();
     const QGauss<dim> quadrature(degree + 1);
-    FEValues<dim>     fe_values(mapping, fe, quadrature, update_values | update_gradients | update_JxW_values);
+    FEValues<dim>     fe_values(mapping, fe, quadrature, update_values);
+    const bool        plastic = solid.has_history();
 
     IndexSet relevant;
     DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
@@ -217,64 +226,60 @@ namespace Nodus
     DoFTools::make_hanging_node_constraints(dof_handler, hanging_nodes);
     hanging_nodes.close();
 
-    std::array<Vector, 2> stress;
-    for (auto &v : stress)
+    std::vector<Vector> nodal(plastic ? 3 : 2);
+    for (auto &v : nodal)
       v.reinit(owned, communicator);
     Vector mass(owned, communicator);
 
-    const unsigned int                    n_dofs = fe.n_dofs_per_cell();
-    std::vector<types::global_dof_index>  dofs(n_dofs);
-    std::vector<Tensor<2, dim>>           grad_u(quadrature.size());
-    std::array<dealii::Vector<double>, 2> cell_stress;
-    dealii::Vector<double>                cell_mass(n_dofs);
-    const FEValuesExtractors::Vector      displacement(0);
+    const unsigned int                   n_dofs = fe.n_dofs_per_cell();
+    std::vector<types::global_dof_index> dofs(n_dofs);
+    std::vector<dealii::Vector<double>>  cell_values(nodal.size());
+    dealii::Vector<double>               cell_mass(n_dofs);
 
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-      {
-        fe_values.reinit(cell);
-        fe_values[displacement].get_function_gradients(u, grad_u);
-        for (auto &v : cell_stress)
-          v.reinit(n_dofs);
-        cell_mass = 0.;
-        for (unsigned int q = 0; q < quadrature.size(); ++q)
+    solid.visit(
+        u,
+        [&](const DoFHandler<dim>::active_cell_iterator &cell, const std::vector<SolidAssembler::PointResult> &points)
         {
-          const Tensor<2, dim> F     = unit_symmetric_tensor<dim>() + grad_u[q];
-          const auto           sigma = materials[cell->material_id()]->cauchy_stress(F);
-          for (unsigned int i = 0; i < n_dofs; ++i)
-          {
-            const unsigned int c      = fe.system_to_component_index(i).first;
-            const double       weight = fe_values.shape_value(i, q) * fe_values.JxW(q);
-            cell_mass[i] += weight;
-            for (unsigned int part = 0; part < 2; ++part)
-              cell_stress[part][i] += weight * sigma[stress_row[part][c]][stress_column[part][c]];
-          }
-        }
-        cell->get_dof_indices(dofs);
-        hanging_nodes.distribute_local_to_global(cell_mass, dofs, mass);
-        for (unsigned int part = 0; part < 2; ++part)
-          hanging_nodes.distribute_local_to_global(cell_stress[part], dofs, stress[part]);
-      }
+          fe_values.reinit(cell);
+          for (auto &v : cell_values)
+            v.reinit(n_dofs);
+          cell_mass = 0.;
+          for (unsigned int q = 0; q < points.size(); ++q)
+            for (unsigned int i = 0; i < n_dofs; ++i)
+            {
+              const unsigned int c      = fe.system_to_component_index(i).first;
+              const double       weight = fe_values.shape_value(i, q) * points[q].JxW;
+              cell_mass[i] += weight;
+              for (unsigned int part = 0; part < 2; ++part)
+                cell_values[part][i] += weight * points[q].cauchy_stress[stress_row[part][c]][stress_column[part][c]];
+              if (plastic && c == 0)
+                cell_values[2][i] += weight * points[q].equivalent_plastic_strain;
+            }
+          cell->get_dof_indices(dofs);
+          hanging_nodes.distribute_local_to_global(cell_mass, dofs, mass);
+          for (unsigned int part = 0; part < nodal.size(); ++part)
+            hanging_nodes.distribute_local_to_global(cell_values[part], dofs, nodal[part]);
+        });
 
     mass.compress(VectorOperation::add);
-    std::array<Vector, 2> ghosted;
-    for (unsigned int part = 0; part < 2; ++part)
+    std::vector<Vector> ghosted(nodal.size());
+    for (unsigned int part = 0; part < nodal.size(); ++part)
     {
-      stress[part].compress(VectorOperation::add);
+      nodal[part].compress(VectorOperation::add);
       for (const auto i : owned)
         if (!hanging_nodes.is_constrained(i))
-          stress[part](i) /= mass(i);
-      stress[part].compress(VectorOperation::insert);
-      hanging_nodes.distribute(stress[part]);
+          nodal[part](i) /= mass(i);
+      nodal[part].compress(VectorOperation::insert);
+      hanging_nodes.distribute(nodal[part]);
       ghosted[part].reinit(owned, relevant, communicator);
-      ghosted[part] = stress[part];
+      ghosted[part] = nodal[part];
     }
     return ghosted;
   }
 
   void VtuOutput::Implementation::add_bodies(const Vector &u, Output<dim> &output) const
   {
-    const auto stress = nodal_stress(u);
+    const auto values = nodal_values(u);
 
     const auto        &fe      = dof_handler.get_fe();
     const auto         to_node = FETools::lexicographic_to_hierarchic_numbering<dim>(degree);
@@ -300,10 +305,13 @@ namespace Nodus
             const auto dof = dofs[fe.component_to_system_index(c, to_node[j])];
             u_j[c]         = u(dof);
             for (unsigned int part = 0; part < 2; ++part)
-              sigma[stress_row[part][c]][stress_column[part][c]] = stress[part](dof);
+              sigma[stress_row[part][c]][stress_column[part][c]] = values[part](dof);
           }
-          Column(patch.data, j) << u_j << sigma << von_mises(sigma) << cell->material_id() + 1.
-                                << nodes.quadrature_point(j) + u_j;
+          Column column(patch.data, j);
+          column << u_j << sigma << von_mises(sigma) << cell->material_id() + 1.;
+          if (values.size() > 2)
+            column << values[2](dofs[fe.component_to_system_index(0, to_node[j])]);
+          column << nodes.quadrature_point(j) + u_j;
         }
       }
   }
@@ -365,12 +373,12 @@ namespace Nodus
         folder, series + ".pvd", [&](std::ostream &out) { DataOutBase::write_pvd_record(out, written.at(series)); });
   }
 
-  VtuOutput::VtuOutput(const std::string                            &folder,
-                       const Bodies                                 &bodies,
-                       const DoFHandler<dim>                        &dof_handler,
-                       const Mapping<dim>                           &mapping,
-                       const std::vector<std::unique_ptr<Material>> &materials)
-      : implementation_(new Implementation{folder, bodies, dof_handler, mapping, materials})
+  VtuOutput::VtuOutput(const std::string     &folder,
+                       const Bodies          &bodies,
+                       const DoFHandler<dim> &dof_handler,
+                       const Mapping<dim>    &mapping,
+                       const SolidAssembler  &solid)
+      : implementation_(new Implementation{folder, bodies, dof_handler, mapping, solid})
   {
     make_results_folder(folder, implementation_->communicator);
   }
@@ -398,7 +406,7 @@ namespace Nodus
                         const Vector                     &u,
                         const std::vector<ContactFields> &contact)
   {
-    Output<dim> body_output(body_fields, implementation_->degree, t);
+    Output<dim> body_output(body_fields(implementation_->solid.has_history()), implementation_->degree, t);
     implementation_->add_bodies(u, body_output);
     implementation_->write("bodies", increment, t, body_output);
 

@@ -55,10 +55,19 @@ namespace
     print("rotation angle", body.rotation_angle);
     print("translation", body.translation);
     print("global refinement", body.global_refinement);
+    print_choice("volumetric treatment", body.volumetric_treatment);
     print_choice("law", body.material.law);
     print("Young's modulus", body.material.youngs_modulus);
     print("Poisson's ratio", body.material.poissons_ratio);
     print("Mooney-Rivlin ratio", body.material.mooney_rivlin_ratio);
+    print("Ogden moduli", body.material.ogden_moduli);
+    print("Ogden exponents", body.material.ogden_exponents);
+    print("yield stress", body.material.yield_stress);
+    print("hardening modulus", body.material.hardening_modulus);
+    print("saturation stress", body.material.saturation_stress);
+    print("saturation rate", body.material.saturation_rate);
+    print("hardening strains", body.material.hardening_strains);
+    print("hardening stresses", body.material.hardening_stresses);
   }
 
   void print(const BoundaryConditionParameters &condition)

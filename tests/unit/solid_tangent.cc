@@ -1,5 +1,6 @@
-// Solid assembler: the tangent is the derivative of the forces for each law, degree and load; forces of rigid motions,
-// homogeneous deformations and loads are the exact ones; an inverted element fails on every rank and leaves no trace.
+// Solid assembler: the tangent is the derivative of the forces for each law, volumetric treatment, degree and load;
+// forces of rigid motions, homogeneous deformations and loads are the exact ones; an inverted element fails on every
+// rank and leaves no trace.
 
 #include <nodus/bulk/solid_assembler.h>
 
@@ -52,6 +53,8 @@ namespace
     print(text.str());
   }
 
+  using Treatment = BodyParameters::VolumetricTreatment;
+
   BodyParameters body(const std::string &generator, const std::string &arguments, const Law law)
   {
     BodyParameters body;
@@ -60,6 +63,17 @@ namespace
     body.material.law                 = law;
     body.material.youngs_modulus      = 3.;
     body.material.mooney_rivlin_ratio = 0.4;
+    if (law == Law::ogden)
+    {
+      body.material.youngs_modulus  = 0.;
+      body.material.ogden_exponents = {1.8, -2.};
+      body.material.ogden_moduli    = {1., -0.2};
+    }
+    if (law == Law::j2_plasticity)
+    {
+      body.material.yield_stress      = 0.3;
+      body.material.hardening_modulus = 0.2;
+    }
     return body;
   }
   BodyParameters ball(const Law law)
@@ -101,7 +115,11 @@ namespace
       boundary_conditions =
           std::make_unique<BoundaryConditions>(conditions, bodies, dof_handler, mapping, std::vector<double>{2.});
       materials.push_back(make_material(parameters.material));
-      assembler = std::make_unique<SolidAssembler>(dof_handler, mapping, materials, boundary_conditions->loads());
+      assembler = std::make_unique<SolidAssembler>(dof_handler,
+                                                   mapping,
+                                                   materials,
+                                                   boundary_conditions->loads(),
+                                                   std::vector<Treatment>{parameters.volumetric_treatment});
       assembler->make_sparsity(K);
       u.reinit(dof_handler.locally_owned_dofs(), relevant, communicator);
       dealii::DoFTools::map_dofs_to_support_points(mapping, dof_handler, points);
@@ -258,16 +276,24 @@ namespace
     return number(v[0]) + " " + number(v[1]) + " " + number(v[2]);
   }
 
-  void laws(const unsigned int degree)
+  void laws(const unsigned int degree, const Treatment treatment)
   {
+    const auto treated = [treatment](BodyParameters body)
+    {
+      body.volumetric_treatment = treatment;
+      return body;
+    };
     const std::pair<const char *, Law> all[] = {{"linear elastic", Law::linear_elastic},
                                                 {"St Venant-Kirchhoff", Law::st_venant_kirchhoff},
                                                 {"neo-Hookean", Law::neo_hookean},
-                                                {"Mooney-Rivlin", Law::mooney_rivlin}};
+                                                {"Mooney-Rivlin", Law::mooney_rivlin},
+                                                {"Ogden", Law::ogden},
+                                                {"J2 plasticity", Law::j2_plasticity}};
     for (const auto &[name, law] : all)
     {
-      print("degree " + std::to_string(degree) + ", " + name);
-      Model model(ball(law), degree);
+      print("degree " + std::to_string(degree) + (treatment == Treatment::standard ? ", " : ", mean dilatation, ") +
+            name);
+      Model model(treated(ball(law)), degree);
       compare_tangent(model);
       if (law != Law::linear_elastic)
       {
@@ -278,7 +304,7 @@ namespace
 
       // the nodes at x = 1 carry the first column of P
       Tensor<2, dim> F({{1.2, 0.3, 0.}, {0.1, 0.8, 0.2}, {0., -0.1, 1.1}});
-      Model          cube(box(law), degree);
+      Model          cube(treated(box(law)), degree);
       cube.set([&](const Point &X) { return F * X - X; });
       cube.forces();
       dealii::SymmetricTensor<2, dim> S;
@@ -387,7 +413,8 @@ int main(int argc, char **argv)
   root = dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
   for (const unsigned int degree : {1, 2})
   {
-    laws(degree);
+    laws(degree, Treatment::standard);
+    laws(degree, Treatment::mean_dilatation);
     loads(degree);
   }
   inversion();

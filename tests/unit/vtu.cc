@@ -241,7 +241,9 @@ namespace
     ContactFields top = contact_on_top(degree);
     if (!root)
       top.faces.clear();
-    VtuOutput output(folder, bodies, dof_handler, mapping, materials);
+    std::vector<BoundaryConditions::Load> none;
+    const SolidAssembler                  solid(dof_handler, mapping, materials, none);
+    VtuOutput                             output(folder, bodies, dof_handler, mapping, solid);
     output.write(1, 0.5, u, {top});
     output.write(2, 1.0, u, {top, top});
 
@@ -301,7 +303,11 @@ int main(int argc, char *argv[])
     dealii::DoFHandler<dim> dof_handler(bodies.triangulation());
     dof_handler.distribute_dofs(dealii::FESystem<dim>(dealii::FE_Q<dim>(1), dim));
     std::vector<std::unique_ptr<Material>> materials;
-    VtuOutput("vtu_results/file/folder", bodies, dof_handler, dealii::MappingQ1<dim>(), materials);
+    materials.push_back(make_material(cube(0.).material));
+    std::vector<BoundaryConditions::Load> none;
+    const dealii::MappingQ1<dim>          mapping;
+    const SolidAssembler                  solid(dof_handler, mapping, materials, none);
+    VtuOutput("vtu_results/file/folder", bodies, dof_handler, mapping, solid);
   }
   catch (const InputError &error)
   {

@@ -95,7 +95,7 @@ namespace
     explicit Elements(const Problem &problem)
         : n_q_(dealii::Utilities::pow(problem.fe.degree + 1, dim))
         , u_(problem.plain_u)
-        , kernel_(ElementKernel::make(problem.fe))
+        , kernel_(ElementKernel::make(problem.fe, BodyParameters::VolumetricTreatment::standard))
         , batch_u_(problem.fe.n_dofs_per_cell())
         , force(batch_u_.size())
         , stiffness(batch_u_.size() * (batch_u_.size() + dim) / 2)
@@ -131,7 +131,8 @@ namespace
         for (unsigned int i = 0; i < batch_u_.size(); ++i, ++dof)
           batch_u_[i][v] = u_(*dof);
       Lanes det_F;
-      kernel_->integrate(&geometry_[n * n_q_], material, batch_u_.data(), force.data(), stiffness.data(), det_F);
+      kernel_->integrate(
+          &geometry_[n * n_q_], material, batch_u_.data(), nullptr, {}, force.data(), stiffness.data(), det_F);
     }
 
     /// Entry of the stiffness of the cell in a lane, i and j in the order of the element's degrees of freedom.

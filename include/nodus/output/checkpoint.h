@@ -34,12 +34,13 @@ namespace Nodus
       using CellKey = std::array<unsigned int, 4>; ///< CellId::to_binary()
       using FaceKey = std::pair<CellKey, unsigned int>;
       std::vector<std::pair<CellKey, std::vector<double>>> cells;
+      std::vector<std::pair<CellKey, std::vector<double>>> histories; ///< of cells with a law that has one
       std::vector<std::pair<FaceKey, std::vector<double>>> faces;
 
       template <typename Archive>
       void serialize(Archive &archive, const unsigned int)
       {
-        archive &cells &faces;
+        archive &cells &histories &faces;
       }
     };
 

@@ -1,7 +1,7 @@
 #ifndef nodus_output_vtu_h
 #define nodus_output_vtu_h
 
-#include <nodus/bulk/material.h>
+#include <nodus/bulk/solid_assembler.h>
 #include <nodus/mesh/bodies.h>
 #include <nodus/output/contact_fields.h>
 #include <nodus/types.h>
@@ -23,11 +23,11 @@ namespace Nodus
   class VtuOutput
   {
   public:
-    VtuOutput(const std::string                            &folder,
-              const Bodies                                 &bodies,
-              const dealii::DoFHandler<dim>                &dof_handler,
-              const dealii::Mapping<dim>                   &mapping,
-              const std::vector<std::unique_ptr<Material>> &materials);
+    VtuOutput(const std::string             &folder,
+              const Bodies                  &bodies,
+              const dealii::DoFHandler<dim> &dof_handler,
+              const dealii::Mapping<dim>    &mapping,
+              const SolidAssembler          &solid);
     ~VtuOutput();
 
     /// @p u has ghost entries. Collective. @throws InputError when the folder cannot be written.

@@ -1,0 +1,110 @@
+#ifndef nodus_bulk_solid_assembler_scratch_h
+#define nodus_bulk_solid_assembler_scratch_h
+
+#include <nodus/bulk/element_kernel.h>
+#include <nodus/bulk/loads.h>
+#include <nodus/bulk/solid_assembler.h>
+
+#include <algorithm>
+
+namespace Nodus
+{
+  /// Every rank integrates all cells around its nodes, those of its neighbours too: nothing has to be sent.
+  struct SolidAssembler::Scratch
+  {
+    Scratch(const dealii::DoFHandler<dim>                          &dof_handler,
+            const dealii::Mapping<dim>                             &mapping,
+            const std::vector<std::unique_ptr<Material>>           &materials,
+            std::vector<BoundaryConditions::Load>                  &loads,
+            const std::vector<BodyParameters::VolumetricTreatment> &treatments);
+
+    void make_positions(NodeMatrix &tangent);
+    void sweep(const Vector                            &u,
+               double                                   t,
+               Vector                                  &internal,
+               Vector                                  &external,
+               const dealii::AffineConstraints<double> *constraints,
+               NodeMatrix                              *tangent,
+               Vector                                  *rhs);
+
+    const dealii::DoFHandler<dim>                &dof_handler;
+    const std::vector<std::unique_ptr<Material>> &materials;
+    std::vector<std::shared_ptr<ElementKernel>>   kernels; ///< of the bodies; those with the same treatment share it
+    Loads                                         loads;
+    unsigned int                                  n_nodes, n_q; ///< per cell
+
+    struct Cell
+    {
+      Point         centre;
+      unsigned char body;
+      bool          owned;
+    };
+    std::vector<Cell>         cells;
+    std::vector<unsigned int> number_of; ///< in cells, by active cell index
+    /// Consecutive cells of one body: one in each lane, lanes that are left repeat the last.
+    struct Batch
+    {
+      unsigned int first, size;
+      std::size_t  state; ///< where its states begin
+      unsigned int cell(const unsigned int lane) const
+      {
+        return first + std::min(lane, size - 1);
+      }
+    };
+    std::vector<Batch>                          batches;
+    std::vector<ElementKernel::QuadraturePoint> geometry;           ///< [batch][point]
+    std::vector<Lanes>                          committed, current; ///< states: [batch][point][number]
+    std::shared_ptr<const NodeMap>              nodes;
+    std::vector<unsigned int>                   cell_nodes; ///< [cell][node], local numbers
+    std::vector<DoFIndex>                       dofs;       ///< of the local nodes
+    std::vector<NodeMatrix::Position>           positions;  ///< [cell][node a][node b >= a]
+
+    const Material &material(const Batch &batch) const
+    {
+      return *materials[cells[batch.first].body];
+    }
+    ElementKernel &kernel(const Batch &batch) const
+    {
+      return *kernels[cells[batch.first].body];
+    }
+    /// Gathers values at the local nodes.
+    void get_displacement(const Batch &batch, const std::vector<double> &nodal, std::vector<Lanes> &values) const;
+    /// The next call begins a Newton iteration.
+    void forget_iterates()
+    {
+      iterates = 0;
+    }
+    unsigned int iterates = 0; ///< tangents since then
+    void         forget_last()
+    {
+      last_tangent = nullptr;
+    }
+
+    // at the local nodes
+    std::vector<double> nodal_u, nodal_u_before, nodal_internal, nodal_external, nodal_rhs, prescribed;
+    std::vector<char>   is_prescribed;
+    // of the batch at hand, as in ElementKernel::integrate()
+    std::vector<Lanes> batch_u, batch_u_before, batch_force, batch_stiffness;
+
+  private:
+    void add_initial_states(const Material &material);
+    bool is_last(const Vector &u, double t, const dealii::AffineConstraints<double> *constraints, NodeMatrix *tangent);
+    void note_prescribed(const dealii::AffineConstraints<double> *constraints);
+    void prefetch(const Batch &batch, NodeMatrix &tangent) const;
+    /// The cell in @p lane of the batch at hand.
+    void add_loads(unsigned int cell, unsigned int lane, bool with_tangent);
+    void eliminate_prescribed(unsigned int cell, unsigned int lane);
+    void scatter(unsigned int cell, unsigned int lane, NodeMatrix &tangent) const;
+    /// Entry of the stiffness: node a, component i; node b, component k.
+    double &entry(unsigned int a, unsigned int i, unsigned int b, unsigned int k, unsigned int lane);
+
+    std::vector<double> last_values; ///< displacement, time and prescribed displacements of the last sweep
+    NodeMatrix         *last_tangent = nullptr;
+    // of a cell with loads
+    std::vector<double>        cell_u;
+    dealii::Vector<double>     cell_internal, cell_external;
+    dealii::FullMatrix<double> cell_tangent;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,135 @@
+#include <nodus/bulk/solid_assembler_scratch.h>
+#include <nodus/bulk/throw_everywhere.h>
+
+#include <deal.II/grid/grid_tools.h>
+
+// The states of laws with history, and what is known at the quadrature points.
+
+namespace Nodus
+{
+  using namespace dealii;
+
+  bool SolidAssembler::has_history() const
+  {
+    return std::any_of(scratch_->materials.begin(),
+                       scratch_->materials.end(),
+                       [](const auto &material) { return material->n_state() > 0; });
+  }
+
+  void SolidAssembler::commit()
+  {
+    scratch_->forget_iterates();
+    if (!has_history())
+      return;
+    scratch_->committed = scratch_->current;
+    scratch_->forget_last();
+  }
+
+  void SolidAssembler::roll_back()
+  {
+    scratch_->forget_iterates();
+    if (!has_history())
+      return;
+    scratch_->current = scratch_->committed;
+    scratch_->forget_last();
+  }
+
+  std::vector<std::vector<double>> SolidAssembler::history() const
+  {
+    const Scratch                   &s = *scratch_;
+    std::vector<std::vector<double>> history;
+    for (const auto &batch : s.batches)
+      for (unsigned int v = 0; v < batch.size; ++v)
+        if (s.cells[batch.first + v].owned)
+        {
+          history.emplace_back(s.n_q * s.material(batch).n_state());
+          for (std::size_t i = 0; i < history.back().size(); ++i)
+            history.back()[i] = s.committed[batch.state + i][v];
+        }
+    return history;
+  }
+
+  void SolidAssembler::set_history(const std::vector<std::vector<double>> &history)
+  {
+    Scratch                                 &s = *scratch_;
+    std::string                              problem;
+    std::vector<const std::vector<double> *> of_cell(s.cells.size(), nullptr);
+    std::size_t                              n = 0;
+    for (unsigned int c = 0; c < s.cells.size(); ++c)
+      if (s.cells[c].owned)
+      {
+        if (n >= history.size() || history[n].size() != s.n_q * s.materials[s.cells[c].body]->n_state())
+          problem = "The history of the material is not that of these cells and laws";
+        else
+          of_cell[c] = &history[n];
+        ++n;
+      }
+    if (n != history.size())
+      problem = "The history of the material is not that of these cells and laws";
+    throw_everywhere<InputError>(problem, s.dof_handler.get_communicator());
+
+    std::vector<std::vector<double>> of_ghosts(s.cells.size());
+    GridTools::exchange_cell_data_to_ghosts<std::vector<double>>(
+        s.dof_handler,
+        [&](const auto &cell) { return *of_cell[s.number_of[cell->active_cell_index()]]; },
+        [&](const auto &cell, const std::vector<double> &values)
+        {
+          const unsigned int c = s.number_of[cell->active_cell_index()];
+          if (c == numbers::invalid_unsigned_int)
+            return;
+          of_ghosts[c] = values;
+          of_cell[c]   = &of_ghosts[c];
+        });
+    for (const auto &batch : s.batches)
+      for (unsigned int v = 0; v < n_lanes; ++v)
+      {
+        const auto &values = *of_cell[batch.cell(v)];
+        for (std::size_t i = 0; i < values.size(); ++i)
+          s.committed[batch.state + i][v] = values[i];
+      }
+    roll_back();
+  }
+
+  void SolidAssembler::visit(const Vector                                                      &u,
+                             const std::function<void(const DoFHandler<dim>::active_cell_iterator &cell,
+                                                      const std::vector<PointResult> &points)> &visitor) const
+  {
+    Scratch            &s = *scratch_;
+    std::vector<double> nodal_u(s.dofs.size());
+    u.extract_subvector_to(s.dofs.begin(), s.dofs.end(), nodal_u.begin());
+    std::vector<ElementKernel::DeformationGradient> F(s.n_q);
+    std::vector<PointResult>                        points(s.n_q);
+
+    auto cell = s.dof_handler.begin_active();
+    for (unsigned int n = 0; n < s.batches.size(); ++n)
+    {
+      const auto         &batch    = s.batches[n];
+      const Material     &material = s.material(batch);
+      std::vector<double> state(material.n_state());
+      s.get_displacement(batch, nodal_u, s.batch_u);
+      s.kernel(batch).deformation(&s.geometry[n * s.n_q], material.small_strain(), s.batch_u.data(), F.data());
+      for (unsigned int v = 0; v < batch.size; ++v)
+      {
+        if (!s.cells[batch.first + v].owned)
+          continue;
+        for (unsigned int q = 0; q < s.n_q; ++q)
+        {
+          Tensor<2, dim> F_point;
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int J = 0; J < dim; ++J)
+              F_point[i][J] = F[q].F[i][J][v];
+          for (unsigned int i = 0; i < state.size(); ++i)
+            state[i] = s.committed[batch.state + q * state.size() + i][v];
+          points[q] = {material.cauchy_stress(F_point, state.data()),
+                       material.equivalent_plastic_strain(state.data()),
+                       material.stored_energy(F_point, state.data()),
+                       material.dissipation(state.data()),
+                       s.geometry[n * s.n_q + q].JxW[v]};
+        }
+        while (s.number_of[cell->active_cell_index()] != batch.first + v)
+          ++cell;
+        visitor(cell, points);
+      }
+    }
+  }
+} // namespace Nodus
