@@ -1,5 +1,7 @@
 #include <nodus/contact_problem_implementation.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <sstream>
 
 namespace Nodus
@@ -28,6 +30,7 @@ namespace Nodus
         console.remark(reason.str() + "; the increment is halved");
         continue;
       }
+      warn_of_lost_partners();
       commit();
       const unsigned int increment = path.increment();
       path.accept(counts.newton, counts.fallbacks == 0);
@@ -43,6 +46,27 @@ namespace Nodus
       if (interval > 0 && increment % interval == 0)
         write_checkpoint();
     }
+  }
+
+  /// Closed sites that end the increment without a master point slid off the master surface, or went through it: that
+  /// satisfies the equations.
+  void ContactProblem::Implementation::warn_of_lost_partners()
+  {
+    unsigned int              n_closed = 0;
+    std::vector<unsigned int> lost;
+    for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
+      if (surfaces->is_owned(s) && surfaces->has_status(s) && status->kept(s).front() != 0.)
+      {
+        ++n_closed;
+        if (!pairing[s].found)
+          lost.push_back(s);
+      }
+    const unsigned int n_lost = dealii::Utilities::MPI::sum(static_cast<unsigned int>(lost.size()), communicator);
+    n_closed                  = dealii::Utilities::MPI::sum(n_closed, communicator);
+    if (n_lost > 0)
+      console.remark("warning: " + std::to_string(n_lost) + " of " + std::to_string(n_closed) +
+                     " closed sites have no master point any more, first " + site_loci(lost, 1).front() +
+                     ": they slid off the master surface, or went through it in too large an increment");
   }
 
   /// Sets the boundary conditions of time @p t. Where a displacement was prescribed until the interval began, the force

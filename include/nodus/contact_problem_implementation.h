@@ -64,6 +64,7 @@ namespace Nodus
     std::string              unknown_locus(DoFIndex flat_index) const;
     void                     commit();
     void                     roll_back();
+    void                     warn_of_lost_partners();
     [[noreturn]] void        give_up(const std::string &reason, bool converged_before);
     void                     write_checkpoint();
     void                     read_checkpoint();

@@ -127,7 +127,8 @@ int main(int argc, char **argv)
     for (const auto &entry : fs::directory_iterator(folder / "full"))
       left.push_back(entry.path().filename());
     std::sort(left.begin(), left.end());
-    check("  leaves complete files", left == std::vector<std::string>({"contact.csv", "reactions.csv"}));
+    check("  leaves complete files",
+          left == std::vector<std::string>({"contact.csv", "convergence.csv", "reactions.csv"}));
   }
 
   put(kept, checkpoints);
