@@ -24,20 +24,15 @@ namespace Nodus
       return materials;
     }
 
-    /// rho_n = factor E/h: the stiffness of a layer one slave face deep, of the pair's softest material.
-    std::vector<double> normal_augmentations(const Parameters                             &parameters,
-                                             const ContactSurfaces                        &surfaces,
-                                             const std::vector<std::unique_ptr<Material>> &materials)
+    /// Young's modulus of each pair's softest material.
+    std::vector<double> pair_stiffness(const ContactSurfaces                        &surfaces,
+                                       const std::vector<std::unique_ptr<Material>> &materials)
     {
-      std::vector<double> rho;
+      std::vector<double> stiffness(surfaces.n_pairs(), std::numeric_limits<double>::max());
       for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
-      {
-        double softest = std::numeric_limits<double>::max();
         for (const unsigned int body : surfaces.bodies(p))
-          softest = std::min(softest, materials[body]->youngs_modulus());
-        rho.push_back(parameters.contact_pairs[p].normal_augmentation_factor * softest / surfaces.face_size(p));
-      }
-      return rho;
+          stiffness[p] = std::min(stiffness[p], materials[body]->youngs_modulus());
+      return stiffness;
     }
 
     std::vector<Point> node_positions(const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping)
@@ -88,8 +83,13 @@ namespace Nodus
         std::make_unique<SolidAssembler>(dof_handler, *mapping, materials, boundary_conditions->loads(), treatments);
     surfaces = std::make_unique<ContactSurfaces>(parameters.contact_pairs, bodies, dof_handler, *mapping);
     surfaces->set_fixed(boundary_conditions->homogeneous_constraints());
-    status = std::make_unique<Status>(
-        parameters.contact_pairs, *surfaces, normal_augmentations(parameters, *surfaces, materials));
+    // rho_n = factor E/h: the stiffness of a layer one slave face deep
+    const std::vector<double> stiffness = pair_stiffness(*surfaces, materials);
+    std::vector<double>       augmentation;
+    for (unsigned int p = 0; p < stiffness.size(); ++p)
+      augmentation.push_back(parameters.contact_pairs[p].normal_augmentation_factor * stiffness[p] /
+                             surfaces->face_size(p));
+    status  = std::make_unique<Status>(parameters.contact_pairs, *surfaces, augmentation, stiffness);
     contact = std::make_unique<ContactAssembler>(*surfaces, pairing, jump, weights, *status);
 
     const BlockLayout &layout = surfaces->layout();

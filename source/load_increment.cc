@@ -59,7 +59,7 @@ namespace Nodus
         {
           const auto timer = profile.time(Phase::status);
           if (!merged.threshold)
-            status->freeze_threshold(site_pressure(*surfaces, weights, *status, state.lambda));
+            freeze_threshold();
           status->begin_loop(merged.status);
         }
 
@@ -131,7 +131,8 @@ namespace Nodus
       return true;
     if (!status->has_friction())
       return loop.finished(0., "");
-    const auto           timer  = profile.time(Phase::status);
+    const auto timer = profile.time(Phase::status);
+    update_slip_rates();
     const Status::Change change = status->threshold_change(site_pressure(*surfaces, weights, *status, state.lambda));
     const std::string    worst  = site_locus(change.site);
     std::ostringstream   text;

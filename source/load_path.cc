@@ -77,7 +77,9 @@ namespace Nodus
     if (boundary_conditions->set_time(t))
       surfaces->set_fixed(boundary_conditions->homogeneous_constraints());
     const auto  &constraints = boundary_conditions->homogeneous_constraints();
-    const double rest        = (path.interval_end() - t) / (path.interval_end() - path.interval_begin());
+    const double interval_1  = parameters.load_stepping.interval_ends.front();
+    status->set_resolved_interference(std::min(1., t / interval_1));
+    const double rest = (path.interval_end() - t) / (path.interval_end() - path.interval_begin());
     for (const DoFIndex i : surfaces->layout().owned[0])
       released(i) = constraints.is_constrained(i) ? 0. : rest * reaction(i);
     released.compress(dealii::VectorOperation::insert);

@@ -54,10 +54,7 @@ namespace Nodus
 
     if (!paired_before)
     {
-      std::vector<double> distance;
-      for (unsigned int k = 0; k < pairing.size(); ++k)
-        distance.push_back(contact->distance(state, k));
-      status->initialize(pairing, distance);
+      start_contact();
       paired_before     = true;
       committed_pairing = pairing;
       committed_area = nodal_area = weights.area();
@@ -86,6 +83,60 @@ namespace Nodus
     solution.block(1).compress(dealii::VectorOperation::insert);
     solution.block(2).compress(dealii::VectorOperation::insert);
     gather_state();
+  }
+
+  /// Statuses of the first pairing. @throws InputError on every rank where the bodies overlap too much.
+  void ContactProblem::Implementation::start_contact()
+  {
+    std::vector<double>       distance;
+    std::vector<double>       deepest(surfaces->n_pairs(), 0.);
+    std::vector<unsigned int> where(surfaces->n_pairs(), dealii::numbers::invalid_unsigned_int);
+    for (unsigned int s = 0; s < pairing.size(); ++s)
+    {
+      distance.push_back(contact->distance(state, s));
+      const unsigned int p = surfaces->pair(s);
+      if (surfaces->is_owned(s) && surfaces->has_status(s) && pairing[s].found && distance[s] > deepest[p])
+      {
+        deepest[p] = distance[s];
+        where[p]   = s;
+      }
+    }
+    for (unsigned int p = 0; p < surfaces->n_pairs(); ++p)
+    {
+      const auto        &pair  = parameters.contact_pairs[p];
+      const double       limit = pair.overclosure_limit > 0. ? pair.overclosure_limit : 0.5 * surfaces->face_size(p);
+      const auto         worst = dealii::Utilities::MPI::min_max_avg(deepest[p], communicator);
+      const bool         here  = dealii::Utilities::MPI::this_mpi_process(communicator) == worst.max_index;
+      const std::string  locus = site_locus(here ? where[p] : dealii::numbers::invalid_unsigned_int);
+      std::ostringstream message;
+      message << "the bodies overlap at the start: " << locus << " is " << worst.max
+              << " inside the master, the limit is " << limit << "; move the bodies apart, or raise 'Contact pair "
+              << p + 1 << "/Overclosure limit' if this is meant";
+      if (worst.max > limit)
+        throw InputError(parameters.file + ": " + message.str());
+    }
+    status->initialize(pairing, distance);
+  }
+
+  /// Thresholds of the present pressures and, where friction depends on them, of the present slip rates.
+  void ContactProblem::Implementation::freeze_threshold()
+  {
+    update_slip_rates();
+    status->freeze_threshold(site_pressure(*surfaces, weights, *status, state.lambda));
+  }
+
+  void ContactProblem::Implementation::update_slip_rates()
+  {
+    if (!status->friction_varies())
+      return;
+    std::vector<double> rate(surfaces->n_sites(), 0.);
+    for (unsigned int s = 0; s < rate.size(); ++s)
+      if (surfaces->is_owned(s))
+      {
+        const auto slip = contact->slip(state, s);
+        rate[s]         = std::hypot(slip[0], slip[1]) / (time - path.time());
+      }
+    status->set_slip_rates(rate);
   }
 
   void ContactProblem::Implementation::gather_state()
@@ -166,7 +217,7 @@ namespace Nodus
     std::vector<double> before(status->size());
     for (unsigned int k = 0; k < before.size(); ++k)
       before[k] = status->friction(k) ? status->threshold(k) : 0.;
-    status->freeze_threshold(site_pressure(*surfaces, weights, *status, state.lambda));
+    freeze_threshold();
 
     // Sticking nodes keep their friction traction mu lambda Lambda: as unknown of the iteration it is linear.
     for (const ContactPoint &point : weights.points())

@@ -28,13 +28,17 @@ namespace Nodus
       }
     };
 
-    void check_expression(const Section &section, const std::string &key, const std::string &text, const bool timed)
+    /// @p variables: "x,y,z", and perhaps a fourth one.
+    void check_expression(const Section     &section,
+                          const std::string &key,
+                          const std::string &text,
+                          const std::string &variables)
     {
-      const std::string problem = expression_complaint(text, timed ? "x,y,z,t" : "x,y,z");
+      const std::string problem = expression_complaint(text, variables);
       section.require(problem.empty(),
                       key,
                       "has the expression '" + text + "' that does not parse: " + problem + "; variables are x, y, z" +
-                          (timed ? ", t" : "") + ", constants pi");
+                          (variables.size() > 5 ? std::string(", ") + variables.back() : "") + ", constants pi");
     }
 
     void check_ogden(const Section &section, const MaterialParameters &material)
@@ -157,7 +161,7 @@ namespace Nodus
                       prefixed(prefix, "Body"),
                       "is " + std::to_string(region.body) + "; give the number of a body, " + choice);
       if (!region.where.empty())
-        check_expression(section, prefixed(prefix, "Where"), region.where, false);
+        check_expression(section, prefixed(prefix, "Where"), region.where, "x,y,z");
     }
 
     void check(const Section                     &section,
@@ -194,7 +198,7 @@ namespace Nodus
       for (const auto &expression : condition.value)
       {
         section.require(!expression.empty(), "Value", "has an empty expression; write 0 for zero");
-        check_expression(section, "Value", expression, true);
+        check_expression(section, "Value", expression, "x,y,z,t");
       }
 
       for (const auto &[key, t] : {std::pair<const char *, double>("Active from", condition.active_from),
@@ -215,8 +219,55 @@ namespace Nodus
       return a.body == b.body && a.where == b.where && std::any_of(a.boundary_ids.begin(), a.boundary_ids.end(), in_b);
     }
 
+    void check_friction(const Section &section, const ContactPairParameters &pair)
+    {
+      const bool tied    = pair.contact_law == ContactPairParameters::ContactLaw::tied,
+                 coulomb = pair.friction_coefficient > 0.;
+      for (const auto &[key, given] :
+           {std::make_pair("Friction coefficient", coulomb),
+            std::make_pair("Shear limit", pair.shear_limit > 0.),
+            std::make_pair("Initial overclosure",
+                           pair.initial_overclosure != ContactPairParameters::InitialOverclosure::resolve)})
+        section.require(!tied || !given, key, "has no effect on a tied pair; remove it");
+      section.require(pair.contact_law == ContactPairParameters::ContactLaw::unilateral ||
+                          pair.initial_overclosure == ContactPairParameters::InitialOverclosure::resolve,
+                      "Initial overclosure",
+                      "has no effect on a bilateral pair, which is always adjusted; remove it");
+      section.require(!tied || pair.initial_status != ContactPairParameters::InitialStatus::open,
+                      "Initial status",
+                      "is open, but a tied pair never closes later; remove it");
+      if (pair.friction_law == ContactPairParameters::FrictionLaw::tresca)
+      {
+        section.require(!tied, "Friction law", "has no effect on a tied pair; remove it");
+        section.require(pair.shear_limit > 0., "Shear limit", "must be given and > 0: it is the friction of Tresca");
+        section.require(!coulomb, "Friction coefficient", "has no effect on 'Friction law = Tresca'; remove it");
+      }
+      else
+        section.require(coulomb || pair.shear_limit == 0.,
+                        "Shear limit",
+                        "limits a friction that is 0; give a Friction coefficient, or set 'Friction law = Tresca'");
+      const bool second = pair.second_friction_coefficient > 0., direction = pair.friction_direction != Vector3();
+      section.require(!second || coulomb, "Second friction coefficient", "needs a Friction coefficient > 0");
+      section.require(!second || direction, "Friction direction", "is missing; give that of the first coefficient");
+      section.require(second || !direction,
+                      "Friction direction",
+                      "has no effect without a Second friction coefficient; remove it or give that");
+      const bool factor = pair.friction_factor != "1";
+      section.require(!factor || coulomb || pair.friction_law == ContactPairParameters::FrictionLaw::tresca,
+                      "Friction factor",
+                      "has no effect without friction; give a Friction coefficient");
+      if (factor)
+        check_expression(section, "Friction factor", pair.friction_factor, "x,y,z,v");
+    }
+
     void check(const Section &section, const ContactPairParameters &pair, const unsigned int n_bodies)
     {
+      check_friction(section, pair);
+      const bool adjusts = pair.contact_law != ContactPairParameters::ContactLaw::unilateral ||
+                           pair.initial_overclosure == ContactPairParameters::InitialOverclosure::adjust;
+      section.require(adjusts || pair.adjustment_distance == 0.,
+                      "Adjustment distance",
+                      "has no effect; set 'Initial overclosure = strain-free adjust', or remove it");
       const std::string missing = "is missing; give the boundary ids of the faces in contact";
       check(section, pair.slave, "Slave ", n_bodies, 1);
       section.require(!pair.slave.boundary_ids.empty(), "Slave boundary ids", missing);

@@ -42,6 +42,20 @@ namespace Nodus
         {ContactPairParameters::InitialStatus::closed, "closed"},
         {ContactPairParameters::InitialStatus::open, "open"}};
 
+    const Names<ContactPairParameters::ContactLaw> contact_law_names = {
+        {ContactPairParameters::ContactLaw::unilateral, "unilateral"},
+        {ContactPairParameters::ContactLaw::bilateral, "bilateral"},
+        {ContactPairParameters::ContactLaw::tied, "tied"}};
+
+    const Names<ContactPairParameters::FrictionLaw> friction_law_names = {
+        {ContactPairParameters::FrictionLaw::coulomb, "Coulomb"},
+        {ContactPairParameters::FrictionLaw::tresca, "Tresca"}};
+
+    const Names<ContactPairParameters::InitialOverclosure> overclosure_names = {
+        {ContactPairParameters::InitialOverclosure::resolve, "resolve in the first increment"},
+        {ContactPairParameters::InitialOverclosure::adjust, "strain-free adjust"},
+        {ContactPairParameters::InitialOverclosure::interference, "interference fit"}};
+
     const Names<ContactPairParameters::StatusTest> status_test_names = {
         {ContactPairParameters::StatusTest::weighted, "weighted"}, {ContactPairParameters::StatusTest::raw, "raw"}};
 
@@ -55,6 +69,11 @@ namespace Nodus
   std::string text_of(const ContactPairParameters::Integration integration)
   {
     return text_of(integration, integration_names);
+  }
+
+  std::string text_of(const ContactPairParameters::ContactLaw law)
+  {
+    return text_of(law, contact_law_names);
   }
 
   std::string text_of(const ContactPairParameters::Surface surface)
@@ -109,8 +128,39 @@ namespace Nodus
                       "Points of that rule in each direction of a face [-]: Gauss any, Simpson odd, Newton-Cotes 2, 3, "
                       "4, 5 or 7; 0: automatic.",
                       Patterns::Integer(0, 20));
+    add_choice(
+        prm,
+        "Contact law",
+        pair.contact_law,
+        contact_law_names,
+        "What the surfaces do once closed [-]: push only, or never open again but slide, or stay tied where they "
+        "start.");
+    add_choice(prm,
+               "Friction law",
+               pair.friction_law,
+               friction_law_names,
+               "Limit of the friction traction [-]: friction coefficient times pressure, or the shear limit.");
     prm.add_parameter(
         "Friction coefficient", pair.friction_coefficient, "Coulomb's coefficient [-]; 0: no friction.", not_negative);
+    prm.add_parameter("Second friction coefficient",
+                      pair.second_friction_coefficient,
+                      "Of orthotropic friction, across the friction direction [-]; 0: as the first one. The limits are "
+                      "the half axes of an ellipse, and slip is normal to it.",
+                      not_negative);
+    prm.add_parameter("Friction direction",
+                      pair.friction_direction,
+                      "Of orthotropic friction: direction in space of the first coefficient, projected on the surface "
+                      "[-]; three numbers.");
+    prm.add_parameter("Friction factor",
+                      pair.friction_factor,
+                      "Factor on the friction coefficients, of Tresca on the shear limit [-]: expression of the "
+                      "reference coordinates x, y, z [length] and of the slip rate v [length/time], e.g. "
+                      "0.6+0.4*exp(-v/10). The slip rate is the slip of the increment over its time.",
+                      Patterns::Anything());
+    prm.add_parameter("Shear limit",
+                      pair.shear_limit,
+                      "Friction tractions do not exceed this [pressure]; 0: no limit (Coulomb).",
+                      not_negative);
     prm.add_parameter("Normal augmentation factor",
                       pair.normal_augmentation_factor,
                       "Factor on Young's modulus over face size, the scale of gaps against pressures [-]. It "
@@ -153,6 +203,23 @@ namespace Nodus
                pair.initial_status,
                initial_status_names,
                "Status of the slave nodes at the start [-].");
+    add_choice(
+        prm,
+        "Initial overclosure",
+        pair.initial_overclosure,
+        overclosure_names,
+        "What happens to slave nodes that start inside the master [-]: they are pushed out in the first increment; "
+        "or stay where they are, free of stress; or are pushed out in the course of the first interval of the "
+        "load path. Tied and bilateral pairs stay where they are.");
+    prm.add_parameter("Adjustment distance",
+                      pair.adjustment_distance,
+                      "Gaps up to this, too, start closed and free of stress, if overclosures stay [length]; tied and "
+                      "bilateral pairs, 0: a tenth of the mean slave face.",
+                      not_negative);
+    prm.add_parameter("Overclosure limit",
+                      pair.overclosure_limit,
+                      "A run with a larger initial overclosure is refused [length]; 0: half of the mean slave face.",
+                      not_negative);
     add_choice(prm,
                "Status test",
                pair.status_test,

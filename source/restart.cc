@@ -78,9 +78,10 @@ namespace Nodus
     }
 
     /// State of a slave node in a checkpoint: its Status::Record, lambda, Lambda, the area that they refer to and the
-    /// two tangents that Lambda refers to. It travels as vectors like the displacement, three numbers in each.
+    /// two tangents that Lambda refers to. It travels as vectors like the displacement, three numbers in each, zeros at
+    /// the end.
     constexpr unsigned int n_status       = std::tuple_size<Status::Record>::value,
-                           n_node_vectors = (n_status + 4 + 2 * dim) / dim;
+                           n_node_vectors = (n_status + 4 + 2 * dim + dim - 1) / dim;
     using NodeState                       = std::array<double, dim * n_node_vectors>;
     using NodeVectors                     = std::array<Vector, n_node_vectors>;
 
@@ -144,7 +145,7 @@ namespace Nodus
       v.reinit(surfaces->layout().owned[0], communicator);
     for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
     {
-      NodeState            state;
+      NodeState            state{};
       const Status::Record record     = status->kept(k);
       const DoFIndex       multiplier = surfaces->multiplier(k);
       double              *value      = std::copy(record.begin(), record.end(), state.begin());

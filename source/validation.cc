@@ -134,10 +134,25 @@ namespace Nodus
       text << text_of(pair.scheme) << " scheme"
            << (pair.scheme == Scheme::averaged ? ", by " + text_of(pair.integration) : "") << ", "
            << text_of(pair.surface) << " surface, ";
-      if (pair.friction_coefficient > 0.)
+      using Pair = ContactPairParameters;
+      if (pair.contact_law != Pair::ContactLaw::unilateral)
+        text << text_of(pair.contact_law) << ", ";
+      if (pair.contact_law == Pair::ContactLaw::tied)
+        text << "no slip";
+      else if (pair.friction_law == Pair::FrictionLaw::tresca)
+        text << "Tresca friction " << pair.shear_limit;
+      else if (pair.friction_coefficient > 0.)
+      {
         text << "friction coefficient " << pair.friction_coefficient;
+        if (pair.second_friction_coefficient > 0.)
+          text << " and " << pair.second_friction_coefficient << " across";
+        if (pair.shear_limit > 0.)
+          text << ", at most " << pair.shear_limit;
+      }
       else
         text << "no friction";
+      if (pair.friction_factor != "1")
+        text << ", times " << pair.friction_factor;
       return text.str();
     }
 
@@ -154,7 +169,7 @@ namespace Nodus
     /// Slave sites of one pair before anything has moved.
     struct Gaps
     {
-      unsigned int sites = 0, found = 0, closed = 0;
+      unsigned int sites = 0, found = 0, closed = 0, adjusted = 0;
       double       smallest = std::numeric_limits<double>::max(), largest = -std::numeric_limits<double>::max();
     };
   } // namespace
@@ -207,12 +222,13 @@ namespace Nodus
             continue;
           }
           ++gaps.found;
-          const double distance = p.contact->distance(p.state, k);
-          const double gap      = std::abs(distance) < round_off * p.surfaces->face_size(pair) ? 0. : -distance;
-          gaps.smallest         = std::min(gaps.smallest, gap);
-          gaps.largest          = std::max(gaps.largest, gap);
+          const double distance = p.contact->distance(p.state, k) + p.status->adjustment(k);
+          gaps.adjusted += p.status->adjustment(k) != 0.;
+          const double gap = std::abs(distance) < round_off * p.surfaces->face_size(pair) ? 0. : -distance;
+          gaps.smallest    = std::min(gaps.smallest, gap);
+          gaps.largest     = std::max(gaps.largest, gap);
         }
-      for (unsigned int *count : {&gaps.sites, &gaps.found, &gaps.closed})
+      for (unsigned int *count : {&gaps.sites, &gaps.found, &gaps.closed, &gaps.adjusted})
         *count = dealii::Utilities::MPI::sum(*count, communicator);
       gaps.smallest = dealii::Utilities::MPI::min(gaps.smallest, communicator);
       gaps.largest  = dealii::Utilities::MPI::max(gaps.largest, communicator);
@@ -223,6 +239,8 @@ namespace Nodus
            << (p.surfaces->has_points(pair) ? " integration points" : " slave nodes") << " find a master point";
       if (gaps.found > 0)
         text << ", gap " << gaps.smallest << " to " << gaps.largest << ", " << gaps.closed << " start closed";
+      if (gaps.adjusted > 0)
+        text << ", " << gaps.adjusted << " adjusted";
       p.console.line(name + ": " + describe(parameters.contact_pairs[pair]));
       p.console.line(text.str());
       if (const auto loci = p.site_loci(lost, 3); !loci.empty())

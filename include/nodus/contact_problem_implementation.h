@@ -57,6 +57,9 @@ namespace Nodus
 
     Norms                    assemble_contact(const dealii::AffineConstraints<double> &constraints);
     void                     follow_pressure();
+    void                     freeze_threshold();
+    void                     update_slip_rates();
+    void                     start_contact();
     void                     gather_state();
     std::string              site_locus(unsigned int site) const;
     std::vector<std::string> site_loci(const std::vector<unsigned int> &sites, unsigned int n) const;

@@ -156,24 +156,50 @@ namespace Nodus
       weighted,
       raw
     };
-    std::string      name;
-    RegionParameters slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
-    RegionParameters master; ///< keys "Master body", ...
-    double           friction_coefficient           = 0.;
-    double           normal_augmentation_factor     = 1.;  ///< times E/h gives rho_n
-    double           tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
-    Scheme           scheme                         = Scheme::averaged;
-    Integration      integration                    = Integration::segment;  ///< averaged scheme
-    QuadratureRule   quadrature_rule                = QuadratureRule::gauss; ///< integration points, averaged by face
-    unsigned int     quadrature_points              = 0; ///< per direction of a slave face; 0 = automatic
-    SurfaceMeasure   surface_measure                = SurfaceMeasure::current;
-    Weights          weights                        = Weights::nodal_quadrature;
-    Surface          surface                        = Surface::smoothed;
-    Normal           normal                         = Normal::averaged;
-    double           search_distance                = 0.;   ///< [length]; 0 = automatic
-    double           projection_tolerance           = 0.05; ///< overhang accepted, in face sizes
-    InitialStatus    initial_status                 = InitialStatus::by_gap;
-    StatusTest       status_test                    = StatusTest::weighted;
+    enum class ContactLaw
+    {
+      unilateral,
+      bilateral, ///< what has closed never opens
+      tied       ///< closed from the start, without slip
+    };
+    enum class FrictionLaw
+    {
+      coulomb,
+      tresca
+    };
+    enum class InitialOverclosure
+    {
+      resolve,     ///< pressed out of each other in the first increment
+      adjust,      ///< taken as the undeformed state
+      interference ///< pressed out in the course of the first interval
+    };
+    std::string        name;
+    RegionParameters   slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
+    RegionParameters   master; ///< keys "Master body", ...
+    ContactLaw         contact_law                 = ContactLaw::unilateral;
+    FrictionLaw        friction_law                = FrictionLaw::coulomb;
+    double             friction_coefficient        = 0.;
+    double             second_friction_coefficient = 0.;     ///< across the friction direction; 0: the same
+    Vector3            friction_direction;                   ///< of the first coefficient; zero: there is only one
+    std::string        friction_factor                = "1"; ///< of reference x, y, z and slip rate v
+    double             shear_limit                    = 0.;  ///< [pressure]; 0: none
+    double             normal_augmentation_factor     = 1.;  ///< times E/h gives rho_n
+    double             tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
+    Scheme             scheme                         = Scheme::averaged;
+    Integration        integration                    = Integration::segment;  ///< averaged scheme
+    QuadratureRule     quadrature_rule                = QuadratureRule::gauss; ///< integration points, averaged by face
+    unsigned int       quadrature_points              = 0; ///< per direction of a slave face; 0 = automatic
+    SurfaceMeasure     surface_measure                = SurfaceMeasure::current;
+    Weights            weights                        = Weights::nodal_quadrature;
+    Surface            surface                        = Surface::smoothed;
+    Normal             normal                         = Normal::averaged;
+    double             search_distance                = 0.;   ///< [length]; 0 = automatic
+    double             projection_tolerance           = 0.05; ///< overhang accepted, in face sizes
+    InitialStatus      initial_status                 = InitialStatus::by_gap;
+    InitialOverclosure initial_overclosure            = InitialOverclosure::resolve;
+    double             adjustment_distance            = 0.; ///< gaps up to here are adjusted, too [length]
+    double             overclosure_limit              = 0.; ///< [length]; 0 = automatic
+    StatusTest         status_test                    = StatusTest::weighted;
   };
 
   struct LoopParameters
@@ -276,6 +302,7 @@ namespace Nodus
   std::string text_of(ContactPairParameters::Scheme scheme);
   std::string text_of(ContactPairParameters::Integration integration);
   std::string text_of(ContactPairParameters::Surface surface);
+  std::string text_of(ContactPairParameters::ContactLaw law);
   std::string text_of(LoopParameters::Mode mode);
   std::string text_of(LinearSolverParameters::Type type);
 } // namespace Nodus

@@ -36,7 +36,7 @@ namespace Nodus
       unsigned int site;
       double       contact, stick, slip;
       Column3      normal;
-      Matrix3      projector; ///< on the free tangents
+      Matrix3      projector; ///< on the free tangents, times the friction scale of each
     };
 
     /// pi(w) = w/|w| and its derivative K_B (eq. 48). Inside the unit ball a slip node contradicts its status; there
@@ -77,7 +77,7 @@ namespace Nodus
 
   double ContactAssembler::distance(const ContactState &state, const unsigned int site) const
   {
-    return pairing_[site].normal * jump_.jump(site, state.x);
+    return pairing_[site].normal * jump_.jump(site, state.x) - status_.adjustment(site);
   }
 
   std::array<double, 2> ContactAssembler::slip(const ContactState &state, const unsigned int site) const
@@ -96,7 +96,7 @@ namespace Nodus
     std::vector<std::vector<std::pair<unsigned int, double>>> derivative(surfaces_.n_sites());
     const auto add = [&](const unsigned int site, const unsigned int k, const double weight)
     {
-      const double value = status_.friction_coefficient(site) * weight;
+      const double value = status_.threshold_slope(site) * weight;
       for (auto &[slave, sum] : derivative[site])
         if (slave == k)
         {
@@ -128,7 +128,7 @@ namespace Nodus
     const unsigned int n_sites = surfaces_.n_sites();
     system.contact.clear();
     system.variation.clear();
-    const bool unsymmetric = linearise_threshold && status_.has_friction();
+    const bool unsymmetric = linearise_threshold && status_.threshold_follows_pressure();
     system.symmetric       = !unsymmetric;
     const auto d_threshold =
         unsymmetric ? threshold_derivative() : std::vector<std::vector<std::pair<unsigned int, double>>>();
@@ -202,7 +202,7 @@ namespace Nodus
           if (pairing_[s].tangent_free[i])
           {
             const Column3 t = eigen(pairing_[s].tangent[i]);
-            jump.projector += t * t.transpose();
+            jump.projector += pairing_[s].friction_scale[i] * t * t.transpose();
           }
         const Column3 slip = jump.projector * eigen(jump_.jump(s, state.increment));
         distance += jump.contact * this->distance(state, s);

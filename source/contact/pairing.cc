@@ -15,15 +15,19 @@ namespace Nodus
     struct PairingRecord
     {
       unsigned int face; ///< number on the whole master surface
-      double       xi, eta, normal[dim], tangent[2][dim];
+      double       xi, eta, normal[dim], tangent[2][dim], friction_scale[2];
       bool         found, tangent_free[2];
     };
 
     /// The frame around the geometric normal @p direction: tangents are orthogonal to its part in the free directions
     /// and lie in them, so that normal and tangential rows never repeat each other. The normal itself stays as it is:
     /// its held components drop out of the rows, and lambda stays a pressure. found = false when no normal motion is
-    /// left.
-    void set_frame(const Vector3 &direction, const std::array<bool, dim> &free, SitePairing &pairing)
+    /// left. Orthotropic friction turns the tangents to its axes; where the constraints leave one tangent, the limit
+    /// along that counts.
+    void set_frame(const Vector3               &direction,
+                   const std::array<bool, dim> &free,
+                   const ContactPairParameters &pair,
+                   SitePairing                 &pairing)
     {
       Vector3      n      = direction;
       unsigned int n_free = 0;
@@ -41,6 +45,14 @@ namespace Nodus
       const unsigned int axis = std::abs(n[0]) > 0.999 ? 2 : 0;
       Vector3            t    = -n[axis] * n;
       t[axis] += 1.;
+      const bool orthotropic = pair.second_friction_coefficient > 0.;
+      if (orthotropic)
+      {
+        const Vector3 along = pair.friction_direction / pair.friction_direction.norm();
+        if (const Vector3 projected = along - (along * n) * n; projected.norm() > 1e-6)
+          t = projected / projected.norm();
+      }
+      const Vector3 first = t;
       if (pairing.found && n_free == 2)
       {
         Vector3 held;
@@ -51,6 +63,15 @@ namespace Nodus
       pairing.tangent[0]   = t / t.norm();
       pairing.tangent[1]   = dealii::cross_product_3d(n, pairing.tangent[0]);
       pairing.tangent_free = {{pairing.found && n_free >= 2, pairing.found && n_free == 3}};
+      if (orthotropic)
+      {
+        const double ratio = pair.second_friction_coefficient / pair.friction_coefficient;
+        for (unsigned int i = 0; i < 2; ++i)
+        {
+          const double along        = pairing.tangent[i] * first / first.norm();
+          pairing.friction_scale[i] = std::sqrt(along * along + ratio * ratio * (1. - along * along));
+        }
+      }
     }
 
     /// Position and averaged outward normal of every site; complete for owned ones.
@@ -162,10 +183,10 @@ namespace Nodus
 
       if (carries_frame)
       {
-        set_frame(normal, free_motion(surfaces, s, geometry, pairing, averaged), pairing);
+        set_frame(normal, free_motion(surfaces, s, geometry, pairing, averaged), pairs[p], pairing);
         continue;
       }
-      set_frame(normal, {{true, true, true}}, pairing);
+      set_frame(normal, {{true, true, true}}, pairs[p], pairing);
       pairing.found        = false;
       pairing.tangent_free = {{false, false}};
     }
@@ -189,7 +210,8 @@ namespace Nodus
           record.normal[c] = pairing.normal[c];
         for (unsigned int i = 0; i < 2; ++i)
         {
-          record.tangent_free[i] = pairing.tangent_free[i];
+          record.tangent_free[i]   = pairing.tangent_free[i];
+          record.friction_scale[i] = pairing.friction_scale[i];
           for (unsigned int c = 0; c < dim; ++c)
             record.tangent[i][c] = pairing.tangent[i][c];
         }
@@ -209,8 +231,9 @@ namespace Nodus
         pairing.normal = Vector3(record.normal);
         for (unsigned int i = 0; i < 2; ++i)
         {
-          pairing.tangent[i]      = Vector3(record.tangent[i]);
-          pairing.tangent_free[i] = record.tangent_free[i];
+          pairing.tangent[i]        = Vector3(record.tangent[i]);
+          pairing.tangent_free[i]   = record.tangent_free[i];
+          pairing.friction_scale[i] = record.friction_scale[i];
         }
       }
   }

@@ -90,6 +90,8 @@ namespace Nodus
       const bool tested = pairing[s].found && surfaces.has_status(s);
       input.distance.push_back(tested ? assembler.distance(state, s) : 0.);
       input.slip.push_back(assembler.slip(state, s));
+      for (unsigned int i = 0; i < 2; ++i)
+        input.slip.back()[i] *= pairing[s].friction_scale[i];
       if (!tested)
         input.pressure[s] = 0.;
     }

@@ -1,11 +1,13 @@
 #include <nodus/contact/pairing.h>
 #include <nodus/contact/status.h>
+#include <nodus/output/complete_file.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace Nodus
 {
@@ -19,23 +21,33 @@ namespace Nodus
     constexpr unsigned int tolerated_returns = 3;
     /// Gap in face sizes up to which a node starts closed.
     constexpr double initial_gap = 1e-6;
+    /// Distance in face sizes up to which tied and bilateral pairs start closed.
+    constexpr double tying_distance = 0.1;
+
+    using ContactLaw  = ContactPairParameters::ContactLaw;
+    using Overclosure = ContactPairParameters::InitialOverclosure;
   } // namespace
 
   Status::Status(const std::vector<ContactPairParameters> &pairs,
                  const ContactSurfaces                    &surfaces,
-                 const std::vector<double>                &normal_augmentation)
+                 const std::vector<double>                &normal_augmentation,
+                 const std::vector<double>                &stiffness)
       : pairs_(pairs)
       , surfaces_(surfaces)
       , normal_augmentation_(normal_augmentation)
-      , has_friction_(
-            std::any_of(pairs.begin(), pairs.end(), [](const auto &p) { return p.friction_coefficient > 0.; }))
+      , threshold_slope_(surfaces.n_sites(), 0.)
+      , friction_factor_(surfaces.n_sites(), 1.)
+      , threshold_floor_(pairs.size(), 0.)
       , ledger_(surfaces.n_sites())
   {
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+      limits_.emplace_back(pairs[p], stiffness[p]);
     const unsigned int n = surfaces.n_sites();
     now_.contact.assign(n, false);
     now_.stick.assign(n, true);
     now_.threshold.assign(n, 0.);
     now_.slip.assign(n, {{0., 0.}});
+    now_.adjustment.assign(n, 0.);
     committed_ = now_;
   }
 
@@ -44,13 +56,24 @@ namespace Nodus
     using Initial = ContactPairParameters::InitialStatus;
     for (unsigned int k = 0; k < now_.contact.size(); ++k)
     {
-      const unsigned int p      = surfaces_.pair(k);
-      const Initial      option = pairs_[p].initial_status;
-      now_.contact[k]           = surfaces_.has_status(k) && pairing[k].found &&
-                        (option == Initial::closed ||
-                         (option == Initial::by_gap && -distance[k] <= initial_gap * surfaces_.face_size(p)));
+      if (!surfaces_.has_status(k) || !pairing[k].found)
+        continue;
+      const unsigned int p     = surfaces_.pair(k);
+      const auto        &pair  = pairs_[p];
+      const double       size  = surfaces_.face_size(p);
+      const bool         lasts = pair.contact_law != ContactLaw::unilateral; // closed for good
+      double             reach = initial_gap * size;
+      if (lasts || pair.initial_overclosure == Overclosure::adjust)
+        reach =
+            std::max(reach, lasts && pair.adjustment_distance == 0. ? tying_distance * size : pair.adjustment_distance);
+      const bool near = -distance[k] <= reach && (pair.contact_law != ContactLaw::tied || distance[k] <= reach);
+      now_.contact[k] = pair.initial_status == Initial::closed || (pair.initial_status == Initial::by_gap && near);
+      if ((lasts && now_.contact[k]) || (pair.initial_overclosure == Overclosure::adjust && near) ||
+          (pair.initial_overclosure == Overclosure::interference && distance[k] > 0.))
+        now_.adjustment[k] = distance[k];
     }
     surfaces_.site_exchange().update(now_.contact);
+    surfaces_.site_exchange().update(now_.adjustment);
     committed_ = now_;
   }
 
@@ -77,9 +100,9 @@ namespace Nodus
     {
       if (!surfaces_.is_owned(k))
         continue;
-      const double mu = pairs_[surfaces_.pair(k)].friction_coefficient;
-      largest         = std::max(largest, mu * std::abs(site_pressure[k]));
-      const double d  = std::abs(mu * std::min(site_pressure[k], 0.) - now_.threshold[k]);
+      const double threshold = limits_[surfaces_.pair(k)].threshold(site_pressure[k], friction_factor_[k]);
+      largest                = std::max(largest, -threshold);
+      const double d         = std::abs(threshold - now_.threshold[k]);
       if (d > change.value)
         change = {d, k};
     }
@@ -96,16 +119,40 @@ namespace Nodus
   {
     note_friction();
     for (unsigned int k = 0; k < site_pressure.size(); ++k)
-      now_.threshold[k] = pairs_[surfaces_.pair(k)].friction_coefficient * std::min(site_pressure[k], 0.);
+    {
+      const FrictionLimit &limit = limits_[surfaces_.pair(k)];
+      now_.threshold[k]          = limit.threshold(site_pressure[k], friction_factor_[k]);
+      threshold_slope_[k]        = limit.slope(site_pressure[k], friction_factor_[k]);
+    }
     update_floor();
+  }
+
+  void Status::set_slip_rates(const std::vector<double> &rate)
+  {
+    std::ostringstream problem;
+    for (unsigned int k = 0; k < rate.size() && problem.str().empty(); ++k)
+      if (surfaces_.is_owned(k))
+      {
+        const Point X       = surfaces_.site_position(k);
+        friction_factor_[k] = limits_[surfaces_.pair(k)].factor(X, rate[k]);
+        if (!(friction_factor_[k] >= 0. && std::isfinite(friction_factor_[k])))
+          problem << "'Friction factor = " << pairs_[surfaces_.pair(k)].friction_factor << "' of "
+                  << pair_label(pairs_, surfaces_.pair(k)) << " is " << friction_factor_[k] << " at (" << X
+                  << ") for the slip rate " << rate[k] << "; it must be >= 0 everywhere";
+      }
+    throw_on_every_rank(problem.str(), surfaces_.layout().communicator);
+    surfaces_.site_exchange().update(friction_factor_);
   }
 
   void Status::update_floor()
   {
-    threshold_floor_ = 0.;
-    for (const double t : now_.threshold)
-      threshold_floor_ = std::max(threshold_floor_, -relative_threshold_floor * t);
-    threshold_floor_ = dealii::Utilities::MPI::max(threshold_floor_, surfaces_.layout().communicator);
+    threshold_floor_.assign(pairs_.size(), 0.);
+    for (unsigned int k = 0; k < now_.threshold.size(); ++k)
+    {
+      double &floor = threshold_floor_[surfaces_.pair(k)];
+      floor         = std::max(floor, -relative_threshold_floor * now_.threshold[k]);
+    }
+    dealii::Utilities::MPI::max(threshold_floor_, surfaces_.layout().communicator, threshold_floor_);
   }
 
   void Status::begin_increment()
@@ -141,8 +188,11 @@ namespace Nodus
 
   Contradiction Status::contradiction(const StatusInput &input, const unsigned int site, const double tolerance) const
   {
+    const ContactLaw law = pairs_[surfaces_.pair(site)].contact_law;
+    if (law == ContactLaw::tied)
+      return Contradiction::none;
     const double value = input.pressure[site] - normal_augmentation(site) * input.distance[site];
-    if (now_.contact[site] && value > tolerance)
+    if (now_.contact[site] && value > tolerance && law != ContactLaw::bilateral)
       return Contradiction::tension;
     if (!now_.contact[site] && value < -tolerance)
       return Contradiction::penetration;
@@ -269,7 +319,12 @@ namespace Nodus
   Status::Record Status::kept(const unsigned int site) const
   {
     const State &c = committed_;
-    return {{double(c.contact[site]), double(c.stick[site]), c.threshold[site], c.slip[site][0], c.slip[site][1]}};
+    return {{double(c.contact[site]),
+             double(c.stick[site]),
+             c.threshold[site],
+             c.slip[site][0],
+             c.slip[site][1],
+             c.adjustment[site]}};
   }
 
   void Status::restore(std::vector<Record> records)
@@ -277,10 +332,11 @@ namespace Nodus
     surfaces_.site_exchange().update(records);
     for (unsigned int k = 0; k < records.size(); ++k)
     {
-      committed_.contact[k]   = records[k][0] != 0.;
-      committed_.stick[k]     = records[k][1] != 0.;
-      committed_.threshold[k] = records[k][2];
-      committed_.slip[k]      = {{records[k][3], records[k][4]}};
+      committed_.contact[k]    = records[k][0] != 0.;
+      committed_.stick[k]      = records[k][1] != 0.;
+      committed_.threshold[k]  = records[k][2];
+      committed_.slip[k]       = {{records[k][3], records[k][4]}};
+      committed_.adjustment[k] = records[k][5];
     }
     roll_back();
   }

@@ -4,6 +4,7 @@
 #include <deal.II/base/function_parser.h>
 #include <deal.II/base/numbers.h>
 
+#include <algorithm>
 #include <iostream>
 #include <sstream>
 
@@ -18,7 +19,10 @@ namespace Nodus
     try
     {
       dealii::FunctionParser<dim> function(1);
-      function.initialize(variables, expression, {{"pi", dealii::numbers::PI}}, variables == "x,y,z,t");
+      function.initialize(variables,
+                          expression,
+                          {{"pi", dealii::numbers::PI}},
+                          std::count(variables.begin(), variables.end(), ',') == dim);
       function.value(Point(0.5, 0.25, 0.125)); // parsed at the first evaluation
     }
     catch (const dealii::ExceptionBase &error)

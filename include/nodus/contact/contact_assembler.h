@@ -62,12 +62,12 @@ namespace Nodus
     /// Collective.
     double norm(const ContactResidual &residual, double length) const;
 
-    /// d_n and the tangential jump of the increment at an owned site; zero where unpaired.
+    /// d_n, without what is adjusted, and the tangential jump of the increment at an owned site; 0 where unpaired.
     double                distance(const ContactState &state, unsigned int site) const;
     std::array<double, 2> slip(const ContactState &state, unsigned int site) const;
 
   private:
-    /// d(mu lambda_s)/d lambda_k of every site with friction.
+    /// d(mu lambda_s)/d lambda_k of every site whose friction follows the pressure.
     std::vector<std::vector<std::pair<unsigned int, double>>> threshold_derivative() const;
 
     const ContactSurfaces &surfaces_;

@@ -19,6 +19,7 @@ namespace Nodus
     Vector3    normal;        ///< unit, from slave to master
     std::array<Vector3, 2> tangent;                      ///< unit, with the normal a right-handed frame
     std::array<bool, 2>    tangent_free{{false, false}}; ///< void directions carry no friction multiplier
+    std::array<double, 2>  friction_scale{{1., 1.}};     ///< limit of friction along the tangents over the first one
   };
 
   /// Projections of this rank's contact sites, and frames of these and of the ghosts.

@@ -1,10 +1,12 @@
 #ifndef nodus_contact_status_h
 #define nodus_contact_status_h
 
+#include <nodus/contact/friction_limit.h>
 #include <nodus/contact/surface.h>
 #include <nodus/parameters.h>
 #include <nodus/types.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -19,7 +21,8 @@ namespace Nodus
     std::vector<double>                pressure; ///< lambda_bar (weighted) or lambda (raw) [pressure]
     std::vector<double>                distance; ///< d_n > 0 penetration [length]
     std::vector<std::array<double, 2>> Lambda;   ///< friction semi-multiplier in the tangent frame
-    std::vector<std::array<double, 2>> slip;     ///< tangential jump of the step's displacement [length]
+    std::vector<std::array<double, 2>> slip;     ///< tangential jump of the step's displacement, scaled as
+                                                 ///< SitePairing::friction_scale says [length]
   };
 
   /// Why a status changed: what contradicted it.
@@ -45,9 +48,11 @@ namespace Nodus
   class Status
   {
   public:
+    /// @p normal_augmentation and @p stiffness of each pair [pressure/length, pressure].
     Status(const std::vector<ContactPairParameters> &pairs,
            const ContactSurfaces                    &surfaces,
-           const std::vector<double>                &normal_augmentation);
+           const std::vector<double>                &normal_augmentation,
+           const std::vector<double>                &stiffness);
 
     /// Number of local contact sites.
     unsigned int size() const
@@ -71,7 +76,7 @@ namespace Nodus
     /// In contact with a threshold above the relative floor; otherwise the site is frictionless.
     bool friction(const unsigned int site) const
     {
-      return now_.contact[site] && -now_.threshold[site] > threshold_floor_;
+      return now_.contact[site] && -now_.threshold[site] > threshold_floor_[surfaces_.pair(site)];
     }
     ContactStatus status(const unsigned int site) const
     {
@@ -79,9 +84,15 @@ namespace Nodus
              : friction(site) && stick(site) ? ContactStatus::stick
                                              : ContactStatus::slip;
     }
-    double friction_coefficient(const unsigned int site) const
+    /// Derivative of the threshold with respect to the pressure that froze it.
+    double threshold_slope(const unsigned int site) const
     {
-      return pairs_[surfaces_.pair(site)].friction_coefficient;
+      return threshold_slope_[site];
+    }
+    /// What of d_n at the first pairing counts as no overclosure (d_n > 0) or gap (d_n < 0) now [length].
+    double adjustment(const unsigned int site) const
+    {
+      return now_.adjustment[site] * (interferes(surfaces_.pair(site)) ? 1. - resolved_ : 1.);
     }
     /// rho_n = h_n of the site's pair [pressure/length].
     double normal_augmentation(const unsigned int site) const
@@ -93,10 +104,10 @@ namespace Nodus
     {
       const unsigned int pair = surfaces_.pair(site);
       return pairs_[pair].tangential_augmentation_factor * normal_augmentation_[pair] /
-             std::max(-threshold, threshold_floor_);
+             std::max(-threshold, threshold_floor_[pair]);
     }
 
-    /// First pairing of the run: by gap, closed or open. Collective.
+    /// First pairing of the run: by gap, closed or open, and what is adjusted. Collective.
     void initialize(const Pairing &pairing, const std::vector<double> &distance);
     /// Imposes the state of one site: S, S_f and mu lambda_s; call it on every rank that has the site. Collective.
     void assign(unsigned int site, bool contact, bool stick, double threshold);
@@ -112,10 +123,26 @@ namespace Nodus
     };
     Change threshold_change(const std::vector<double> &site_pressure) const;
     void   freeze_threshold(const std::vector<double> &site_pressure);
-    /// True when a pair has friction at all.
+    /// A pair has friction at all; friction that depends on the pressure; on position or slip rate.
     bool has_friction() const
     {
-      return has_friction_;
+      return has(&FrictionLimit::exists);
+    }
+    bool threshold_follows_pressure() const
+    {
+      return has(&FrictionLimit::follows_pressure);
+    }
+    bool friction_varies() const
+    {
+      return has(&FrictionLimit::varies);
+    }
+    /// Slip rates of the owned sites [length/time], for the friction factors. @throws InputError on every rank where a
+    /// factor is not >= 0. Collective.
+    void set_slip_rates(const std::vector<double> &rate);
+    /// Part of the interference of fits that is pressed out by now, 0 to 1.
+    void set_resolved_interference(const double part)
+    {
+      resolved_ = part;
     }
 
     /// Statuses forget which vectors this loop has visited. @p merged: updates follow single Newton iterations.
@@ -150,8 +177,8 @@ namespace Nodus
     void commit(const std::vector<std::array<double, 2>> &slip);
     void roll_back();
 
-    /// What commit() kept of a site as numbers: S, S_f, mu lambda_s and the accumulated slip.
-    using Record = std::array<double, 5>;
+    /// What commit() kept of a site as numbers: S, S_f, mu lambda_s, the accumulated slip and the adjustment.
+    using Record = std::array<double, 6>;
     Record kept(unsigned int site) const;
     /// Goes back to a state that was kept() once; one record per site, right at owned ones. Collective.
     void restore(std::vector<Record> records);
@@ -162,7 +189,17 @@ namespace Nodus
       std::vector<char>                  contact, stick;
       std::vector<double>                threshold;
       std::vector<std::array<double, 2>> slip;
+      std::vector<double>                adjustment;
     };
+    bool has(bool (FrictionLimit::*property)() const) const
+    {
+      return std::any_of(
+          limits_.begin(), limits_.end(), [&](const FrictionLimit &limit) { return (limit.*property)(); });
+    }
+    bool interferes(const unsigned int pair) const
+    {
+      return pairs_[pair].initial_overclosure == ContactPairParameters::InitialOverclosure::interference;
+    }
     void              update_floor();
     void              note_friction();
     std::vector<char> code() const;
@@ -172,9 +209,11 @@ namespace Nodus
     const std::vector<ContactPairParameters> &pairs_;
     const ContactSurfaces                    &surfaces_;
     std::vector<double>                       normal_augmentation_;
-    bool                                      has_friction_;
+    std::vector<FrictionLimit>                limits_; ///< of the pairs
     State                                     now_, committed_;
-    double                                    threshold_floor_ = 0.;
+    std::vector<double>                       threshold_slope_, friction_factor_; ///< of the sites
+    std::vector<double>                       threshold_floor_;                   ///< of the pairs
+    double                                    resolved_ = 0.;
     std::vector<StatusLedger>                 ledger_;
     std::vector<std::vector<char>>            visited_;
     std::vector<char>                         opened_;       ///< in this status loop

@@ -5,7 +5,7 @@
 
 namespace Nodus
 {
-  /// muParser's complaint about @p expression of @p variables ("x,y,z" or "x,y,z,t"; constant pi), empty when it is
+  /// muParser's complaint about @p expression of @p variables ("x,y,z", and perhaps a fourth one; constant pi), empty when it is
   /// fine.
   std::string expression_complaint(const std::string &expression, const std::string &variables);
 } // namespace Nodus
