@@ -27,8 +27,11 @@ struct ContactFixture
       , dof_handler(bodies.triangulation())
   {
     dof_handler.distribute_dofs(fe);
-    surfaces = std::make_unique<Nodus::ContactSurfaces>(pairs, bodies, dof_handler, mapping);
-    status = std::make_unique<Nodus::Status>(pairs, *surfaces, std::vector<double>(pairs.size(), normal_augmentation));
+    surfaces  = std::make_unique<Nodus::ContactSurfaces>(pairs, bodies, dof_handler, mapping);
+    status    = std::make_unique<Nodus::Status>(pairs,
+                                             *surfaces,
+                                             std::vector<double>(pairs.size(), normal_augmentation),
+                                             std::vector<double>(pairs.size(), 1.));
     assembler = std::make_unique<Nodus::ContactAssembler>(*surfaces, pairing, jump, weights, *status);
 
     const std::vector<Nodus::Vector3> zero(surfaces->nodes().size());
