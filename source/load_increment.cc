@@ -2,6 +2,7 @@
 #include <nodus/contact_problem_implementation.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
 
 #include <algorithm>
 #include <sstream>
@@ -12,10 +13,16 @@ namespace Nodus
   {
     /// Newton iterations without progress after which a merged iteration is given up.
     constexpr unsigned int patience = 8;
+    /// Geometry passes that change more than this fraction of the one before are damped.
+    constexpr double slow_contraction = 0.9;
+    /// Times that a geometry loop may come back to the pass before the last.
+    constexpr unsigned int tolerated_geometry_cycles = 2;
+    /// Sites whose statuses cycle may contradict them by this much, of the largest pressure or of the cone.
+    constexpr double tolerated_violation = 1e-3;
   } // namespace
 
   /// The loops as the parameters ask for them; where a merged iteration fails, once more with the geometry as a loop,
-  /// and at last with all three as loops.
+  /// and at last with all three as loops. Where thresholds were to be a loop and that fails, they follow the pressure.
   void ContactProblem::Implementation::solve_increment()
   {
     counts = IterationCounts();
@@ -39,7 +46,20 @@ namespace Nodus
         merged = fewer;
         ++counts.fallbacks;
       }
-    solve_loops();
+    try
+    {
+      solve_loops();
+    }
+    catch (const SolverFailure &failure)
+    {
+      if (parameters.threshold_loop.mode == LoopParameters::Mode::newton || !status->threshold_follows_pressure())
+        throw;
+      console.remark(std::string("three loops given up: ") + failure.what() + "; again with the coupled threshold");
+      roll_back();
+      merged.threshold = true;
+      ++counts.fallbacks;
+      solve_loops();
+    }
   }
 
   /// Three nested loops around Newton (theory section 6); those merged into Newton are passed through once.
@@ -49,16 +69,18 @@ namespace Nodus
     const Newton newton(parameters.newton, merged.any() ? patience : 0);
 
     FixedPointLoop geometry("geometry", parameters.geometry_loop);
+    geometry_cycles = 0;
     do
     {
       pair_surfaces();
 
-      FixedPointLoop threshold("threshold", parameters.threshold_loop);
+      FixedPointLoop     threshold("threshold", parameters.threshold_loop);
+      SecantAcceleration secant(communicator);
       do
       {
         {
           const auto timer = profile.time(Phase::status);
-          if (!merged.threshold)
+          if (!merged.threshold && threshold.counter() == 0)
             freeze_threshold();
           status->begin_loop(merged.status);
         }
@@ -84,7 +106,7 @@ namespace Nodus
                          profile.krylov_iterations += krylov;
                        });
         } while (!statuses_converged(statuses));
-      } while (!threshold_converged(threshold));
+      } while (!threshold_converged(threshold, secant));
     } while (!geometry_converged(geometry));
   }
 
@@ -95,7 +117,25 @@ namespace Nodus
       return true;
     const Status::Update update = update_statuses();
     tables->add_status_changes(update.changes);
-    return loop.finished(update.changes, first_changed);
+    if (update.frozen > 0)
+      console.remark("the statuses cycle: " + std::to_string(update.frozen) +
+                     " sites keep the one that they contradict least: " + cycling);
+    if (!loop.finished(update.changes, first_changed))
+      return false;
+    const Status::Violation violation = status->frozen_violation(
+        status_input(parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state));
+    if (violation.sites > 0)
+    {
+      const std::string  locus = site_locus(violation.site);
+      std::ostringstream text;
+      text << violation.sites << " sites whose statuses cycled contradict them, the worst by " << violation.value
+           << " of the largest pressure or of the cone, at " << locus;
+      if (violation.value > tolerated_violation)
+        throw SolverFailure("the status loop cycles: " + text.str() + ", more than " +
+                            dealii::Utilities::to_string(tolerated_violation));
+      console.remark("warning: " + text.str());
+    }
+    return true;
   }
 
   Status::Update ContactProblem::Implementation::update_statuses(const bool closing_only)
@@ -109,9 +149,7 @@ namespace Nodus
       first_changed                       = loci.front();
       console.remark(std::to_string(update.changes) + " statuses changed, first at " + first_changed);
       if (update.cycles)
-        throw SolverFailure(
-            (merged.status ? "the statuses cycle" : "the status loop cycles, also with one change at a time") +
-            std::string("; the nodes that change back and forth: ") + cycling);
+        throw SolverFailure("the statuses cycle; the nodes that change back and forth: " + cycling);
       if (update.period > 0)
       {
         cycling.clear();
@@ -124,7 +162,7 @@ namespace Nodus
     return update;
   }
 
-  bool ContactProblem::Implementation::threshold_converged(FixedPointLoop &loop)
+  bool ContactProblem::Implementation::threshold_converged(FixedPointLoop &loop, SecantAcceleration &secant)
   {
     ++counts.threshold;
     if (merged.threshold)
@@ -133,12 +171,19 @@ namespace Nodus
       return loop.finished(0., "");
     const auto timer = profile.time(Phase::status);
     update_slip_rates();
-    const Status::Change change = status->threshold_change(site_pressure(*surfaces, weights, *status, state.lambda));
-    const std::string    worst  = site_locus(change.site);
-    std::ostringstream   text;
+    const std::vector<double> pressure = site_pressure(*surfaces, weights, *status, state.lambda);
+    const Status::Change      change   = status->threshold_change(pressure);
+    const std::string         worst    = site_locus(change.site);
+    std::vector<double>       next     = secant.next(status->thresholds(), status->thresholds_at(pressure));
+    std::ostringstream        text;
     text << "threshold changes by " << change.value << ", most at " << worst;
+    if (secant.contraction() > 0.)
+      text << ", " << secant.contraction() << " times the change before";
     console.remark(text.str());
-    return loop.finished(change.value, worst);
+    if (loop.finished(change.value, worst))
+      return true;
+    status->freeze(std::move(next));
+    return false;
   }
 
   bool ContactProblem::Implementation::geometry_converged(FixedPointLoop &loop)
@@ -155,15 +200,26 @@ namespace Nodus
     std::ostringstream text;
     text << "geometry changes by " << value << " of the step, most at " << worst;
     console.remark(text.str());
+    const double before = loop.value();
+    if (loop.finished(value, worst))
+      return true;
 
-    // The solution of two passes ago again, while it differs from that of the last one: a 2-cycle.
-    if (loop.counter() >= 3 && value > parameters.geometry_loop.tolerance &&
-        largest_difference(solution.block(0), u_before_geometry) <= 1e-6 * change)
+    // The solution of two passes ago again, while it differs from that of the last one: a 2-cycle. It is left by
+    // pairing half-way between the two, as is a loop that does not contract; one that comes back is no fixed point.
+    const bool cycle = loop.counter() >= 3 && largest_difference(solution.block(0), u_before_geometry) <= 1e-6 * change;
+    if (cycle && ++geometry_cycles > tolerated_geometry_cycles)
       throw SolverFailure("the geometry loop cycles with period 2, criterion " + std::to_string(value) + ", worst at " +
                           worst +
                           ": a slave node crosses an edge of the faceted master and back; try 'Normal = averaged' or "
                           "smaller increments");
-    return loop.finished(value, worst);
+    if (cycle || (loop.counter() >= 3 && value > slow_contraction * before))
+    {
+      console.remark(cycle ? "the geometry loop cycles with period 2: the next pass starts half-way"
+                           : "the geometry loop does not contract: the next pass starts half-way");
+      solution.block(0).sadd(0.5, 0.5, u_geometry);
+      gather_state();
+    }
+    return false;
   }
 
   /// Largest difference of two displacements at a surface node, and where it is. Collective.

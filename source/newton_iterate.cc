@@ -18,6 +18,8 @@ namespace Nodus
     constexpr double relative_force_floor = 1e-5;
     /// Relative force residual up to which an iterate right after a prescribed motion has all its statuses tested.
     constexpr double settled_force = 1e-3;
+    /// Displacements up to which the direct solver steps in for an iterative one that fails.
+    constexpr DoFIndex largest_direct = 150000;
   } // namespace
 
   std::string coordinates(const Point &X)
@@ -266,10 +268,33 @@ namespace Nodus
     return norms;
   }
 
+  /// An iterative solver that fails leaves this correction to the direct one, if the system is not too large for that.
+  LinearSolver::Report ContactProblem::Implementation::solve_system(BlockVector &correction,
+                                                                    const double relative_tolerance)
+  {
+    try
+    {
+      return linear_solver->solve(system, correction, relative_tolerance);
+    }
+    catch (const SolverFailure &failure)
+    {
+      if (parameters.linear_solver.type == LinearSolverParameters::Type::direct ||
+          dof_handler.n_dofs() > largest_direct)
+        throw;
+      console.remark(std::string(failure.what()) + "; this correction comes from the direct solver");
+    }
+    if (!direct_solver)
+    {
+      direct_solver = make_linear_solver(LinearSolverParameters(), surfaces->layout(), {});
+      direct_solver->set_profile(&profile);
+    }
+    return direct_solver->solve(system, correction, relative_tolerance);
+  }
+
   unsigned int ContactProblem::Implementation::solve(BlockVector &correction, const double relative_tolerance)
   {
     const auto                 timer  = profile.time(Phase::solver_iterations);
-    const LinearSolver::Report report = linear_solver->solve(system, correction, relative_tolerance);
+    const LinearSolver::Report report = solve_system(correction, relative_tolerance);
     if (!report.null_pivots.empty())
       throw SolverFailure("the system is singular (" + std::to_string(report.null_pivots.size()) +
                           " null pivots), first at " + unknown_locus(report.null_pivots.front()));

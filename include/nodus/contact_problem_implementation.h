@@ -16,6 +16,7 @@
 #include <nodus/solve/linear_solver.h>
 #include <nodus/solve/load_stepping.h>
 #include <nodus/solve/newton.h>
+#include <nodus/solve/secant_acceleration.h>
 
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping.h>
@@ -46,9 +47,11 @@ namespace Nodus
     void           solve_loops();
     void           pair_surfaces();
     bool           geometry_converged(FixedPointLoop &loop);
-    bool           threshold_converged(FixedPointLoop &loop);
+    bool           threshold_converged(FixedPointLoop &loop, SecantAcceleration &secant);
     bool           statuses_converged(FixedPointLoop &loop);
     Status::Update update_statuses(bool closing_only = false);
+
+    LinearSolver::Report solve_system(BlockVector &correction, double relative_tolerance);
 
     // Newton's view of it.
     Norms        assemble() override;
@@ -104,6 +107,7 @@ namespace Nodus
     std::unique_ptr<ContactAssembler> contact;
 
     std::unique_ptr<LinearSolver> linear_solver;
+    std::unique_ptr<LinearSolver> direct_solver; ///< where an iterative one has failed
     LinearSystem                  system;
     BlockVector                   solution, committed; ///< (u, lambda, Lambda), now and at the start of the load step
     Vector                        relevant_u, internal, external, contact_force;
@@ -120,6 +124,7 @@ namespace Nodus
     ContactResidual residual;
     Vector          u_geometry, u_before_geometry; ///< displacements of this and the previous pairing
     std::string     first_changed, cycling;        ///< sites of the last change of statuses, and of the last cycle
+    unsigned int    geometry_cycles = 0;           ///< with period 2, in the geometry loop at hand
     bool            paired_before = false, newton_starts = true;
     double          prescribed_before = 0.; ///< still to be met at the last assembly, relative
     MergedLoops     merged;                 ///< in this attempt at the increment

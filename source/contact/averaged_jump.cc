@@ -22,7 +22,7 @@ namespace Nodus
     /// of a quadratic face keep positive integrals down to here.
     constexpr double dual_coverage = 0.75;
     /// Less of the node's surface than this has no partner worth a constraint.
-    constexpr double smallest_coverage = 1e-2;
+    constexpr double smallest_coverage = 2e-2;
     /// Entries of the slave part below this are round-off of the biorthogonality.
     constexpr double smallest_entry = 1e-13;
 
@@ -66,6 +66,7 @@ namespace Nodus
     {
       points.clear();
       double area = 0., covered = 0.;
+      bool   inside = false;
       for (unsigned int q = 0; q < rule.size(); ++q)
       {
         const double       xi = rule.point(q)[0], eta = rule.point(q)[1];
@@ -76,9 +77,13 @@ namespace Nodus
         if (!master.found())
           continue;
         covered += part;
+        inside = inside || search.closest(geometry.x, slave.normal(f, xi, eta), reach, 0.).found();
         points.push_back({xi, eta, rule.weight(q), master});
       }
-      return covered / area;
+      // A face of which nothing but overhang is covered would repeat the constraints of its neighbour.
+      if (!inside)
+        points.clear();
+      return inside ? covered / area : 0.;
     }
 
     /// Integrates one face; @p all_psi is overwritten.
@@ -163,12 +168,13 @@ namespace Nodus
       // The points on a curved face integrate its shape functions nearly, Gauss points to round-off: nodal areas of
       // covered faces are those.
       static const dealii::QGauss<2> gauss(4);
-      Column                         exact = Column::Zero(n);
+      Column exact = Column::Zero(n), full = Column::Zero(n); // areas of the dual functions, hats
       for (unsigned int q = 0; q < gauss.size(); ++q)
       {
         const FaceShape shape(degree, gauss.point(q)[0], gauss.point(q)[1]);
-        exact += gauss.weight(q) * FaceGeometry(face, shape, measure).area_vector().norm() *
-                 Eigen::Map<const Column>(shape.value.data(), n);
+        const double    area = gauss.weight(q) * FaceGeometry(face, shape, measure).area_vector().norm();
+        exact += area * Eigen::Map<const Column>(shape.value.data(), n);
+        full += area * hats(degree, gauss.point(q)[0], gauss.point(q)[1]);
       }
       for (unsigned int a = 0; a < n; ++a)
       {
@@ -183,7 +189,7 @@ namespace Nodus
           for (unsigned int q = 0; q < points.size(); ++q)
             all_psi[n * q + a] *= scale;
         }
-        row[n_columns - 1] = coverage > 0. ? row[n_columns - 2] / coverage : 0.;
+        row[n_columns - 1] = part * exact[a] + (1. - part) * full[a];
       }
       return result;
     }

@@ -118,12 +118,27 @@ namespace Nodus
   void Status::freeze_threshold(const std::vector<double> &site_pressure)
   {
     note_friction();
+    now_.threshold = thresholds_at(site_pressure);
     for (unsigned int k = 0; k < site_pressure.size(); ++k)
-    {
-      const FrictionLimit &limit = limits_[surfaces_.pair(k)];
-      now_.threshold[k]          = limit.threshold(site_pressure[k], friction_factor_[k]);
-      threshold_slope_[k]        = limit.slope(site_pressure[k], friction_factor_[k]);
-    }
+      threshold_slope_[k] = limits_[surfaces_.pair(k)].slope(site_pressure[k], friction_factor_[k]);
+    update_floor();
+  }
+
+  std::vector<double> Status::thresholds_at(const std::vector<double> &site_pressure) const
+  {
+    std::vector<double> thresholds;
+    for (unsigned int k = 0; k < site_pressure.size(); ++k)
+      thresholds.push_back(limits_[surfaces_.pair(k)].threshold(site_pressure[k], friction_factor_[k]));
+    return thresholds;
+  }
+
+  void Status::freeze(std::vector<double> thresholds)
+  {
+    note_friction();
+    for (double &threshold : thresholds)
+      threshold = std::min(threshold, 0.);
+    surfaces_.site_exchange().update(thresholds);
+    now_.threshold = std::move(thresholds);
     update_floor();
   }
 
@@ -164,7 +179,9 @@ namespace Nodus
   {
     visited_.clear();
     opened_.assign(now_.contact.size(), false);
+    frozen_.assign(now_.contact.size(), false);
     one_at_a_time_ = false;
+    freezes_       = false;
     merged_        = merged;
     returns_       = 0;
     note_friction();
@@ -186,26 +203,45 @@ namespace Nodus
     return c;
   }
 
-  Contradiction Status::contradiction(const StatusInput &input, const unsigned int site, const double tolerance) const
+  Contradiction
+  Status::contradiction(const StatusInput &input, const unsigned int site, const double pressure, double &size) const
   {
     const ContactLaw law = pairs_[surfaces_.pair(site)].contact_law;
+    size                 = 0.;
     if (law == ContactLaw::tied)
       return Contradiction::none;
     const double value = input.pressure[site] - normal_augmentation(site) * input.distance[site];
-    if (now_.contact[site] && value > tolerance && law != ContactLaw::bilateral)
-      return Contradiction::tension;
-    if (!now_.contact[site] && value < -tolerance)
-      return Contradiction::penetration;
+    const bool   pulls = now_.contact[site] && value > noise * pressure && law != ContactLaw::bilateral;
+    if (pulls || (!now_.contact[site] && value < -noise * pressure))
+    {
+      size = pressure > 0. ? std::abs(value) / pressure : 1.;
+      return pulls ? Contradiction::tension : Contradiction::penetration;
+    }
     if (!friction(site) || (merged_ && !had_friction_[site]))
       return Contradiction::none;
     const double rho  = tangential_augmentation(site, now_.threshold[site]);
     const double norm = std::hypot(input.Lambda[site][0] + rho * input.slip[site][0],
                                    input.Lambda[site][1] + rho * input.slip[site][1]);
+    size              = std::abs(norm - 1.);
     if (now_.stick[site] && norm > 1. + noise)
       return Contradiction::over_cone;
     if (!now_.stick[site] && norm < 1. - noise)
       return Contradiction::against_slip;
+    size = 0.;
     return Contradiction::none;
+  }
+
+  std::vector<double> Status::largest_pressures(const StatusInput &input) const
+  {
+    std::vector<double> largest(pairs_.size(), 0.);
+    for (unsigned int k = 0; k < input.pressure.size(); ++k)
+      if (surfaces_.is_owned(k))
+      {
+        double &l = largest[surfaces_.pair(k)];
+        l         = std::max(l, std::abs(input.pressure[k]));
+      }
+    dealii::Utilities::MPI::max(largest, surfaces_.layout().communicator, largest);
+    return largest;
   }
 
   Status::Update Status::update(const StatusInput &input, const bool closing_only)
@@ -214,22 +250,17 @@ namespace Nodus
     if (visited_.empty())
       visited_.push_back(code());
 
-    std::vector<double> largest(pairs_.size(), 0.);
-    for (unsigned int k = 0; k < input.pressure.size(); ++k)
-      if (surfaces_.is_owned(k))
-      {
-        double &l = largest[surfaces_.pair(k)];
-        l         = std::max(l, std::abs(input.pressure[k]));
-      }
-    dealii::Utilities::MPI::max(largest, communicator, largest);
-
+    const std::vector<double>  largest = largest_pressures(input);
     Update                     result;
     std::vector<Contradiction> found;
     for (unsigned int k = 0; k < input.pressure.size(); ++k)
       if (surfaces_.is_owned(k))
       {
-        const Contradiction c = contradiction(input, k, noise * largest[surfaces_.pair(k)]);
-        if (c == Contradiction::none || (closing_only && c != Contradiction::penetration))
+        double              size;
+        const Contradiction c = contradiction(input, k, largest[surfaces_.pair(k)], size);
+        if (one_at_a_time_ || freezes_)
+          seen_[k][static_cast<unsigned int>(status(k))] = size;
+        if (c == Contradiction::none || frozen_[k] || (closing_only && c != Contradiction::penetration))
           continue;
         result.sites.push_back(k);
         found.push_back(c);
@@ -288,17 +319,74 @@ namespace Nodus
     if (met == differs.end())
       return;
     update.period = met - differs.begin() + 1;
-    // every site that took part in the cycle
+    freezes_      = freezes_ || one_at_a_time_;
+    std::vector<unsigned int> cycling;
     for (unsigned int back = 0; back < update.period; ++back)
     {
       const auto &a = visited_[visited_.size() - 1 - back], &b = visited_[visited_.size() - 2 - back];
       for (unsigned int k = 0; k < a.size(); ++k)
         if (a[k] != b[k])
+        {
           ledger_[k].period = update.period;
+          if (surfaces_.is_owned(k) && !frozen_[k])
+          {
+            frozen_[k] = freezes_;
+            cycling.push_back(k);
+          }
+        }
     }
-    update.cycles  = merged_ ? ++returns_ > tolerated_returns : one_at_a_time_;
-    one_at_a_time_ = !merged_;
+    if (merged_)
+      update.cycles = ++returns_ > tolerated_returns;
+    else if (freezes_)
+      update.frozen = freeze(cycling);
+    else if (!one_at_a_time_)
+      seen_.assign(now_.contact.size(), {{-1., -1., -1.}});
+    one_at_a_time_ = !merged_ && !freezes_;
     visited_.assign(1, code());
+  }
+
+  /// Gives the @p sites the status that they contradicted least while they cycled. Returns their number on all ranks.
+  unsigned int Status::freeze(const std::vector<unsigned int> &sites)
+  {
+    for (const unsigned int k : sites)
+    {
+      ContactStatus best = status(k);
+      for (const ContactStatus candidate : {ContactStatus::open, ContactStatus::slip, ContactStatus::stick})
+        if (const double size = seen_[k][static_cast<unsigned int>(candidate)];
+            size >= 0. && size < seen_[k][static_cast<unsigned int>(best)])
+          best = candidate;
+      now_.contact[k] = best != ContactStatus::open;
+      now_.stick[k]   = best != ContactStatus::slip;
+    }
+    surfaces_.site_exchange().update(now_.contact);
+    surfaces_.site_exchange().update(now_.stick);
+    return dealii::Utilities::MPI::sum<unsigned int>(sites.size(), surfaces_.layout().communicator);
+  }
+
+  Status::Violation Status::frozen_violation(const StatusInput &input) const
+  {
+    const std::vector<double> largest = largest_pressures(input);
+    Violation                 result;
+    for (unsigned int k = 0; k < input.pressure.size(); ++k)
+      if (surfaces_.is_owned(k) && frozen_[k])
+      {
+        double size;
+        if (contradiction(input, k, largest[surfaces_.pair(k)], size) == Contradiction::none)
+          continue;
+        ++result.sites;
+        if (size > result.value)
+        {
+          result.value = size;
+          result.site  = k;
+        }
+      }
+    const MPI_Comm communicator = surfaces_.layout().communicator;
+    const auto     worst        = dealii::Utilities::MPI::min_max_avg(result.value, communicator);
+    if (worst.max_index != dealii::Utilities::MPI::this_mpi_process(communicator))
+      result.site = dealii::numbers::invalid_unsigned_int;
+    result.value = worst.max;
+    result.sites = dealii::Utilities::MPI::sum(result.sites, communicator);
+    return result;
   }
 
   void Status::commit(const std::vector<std::array<double, 2>> &slip)

@@ -123,6 +123,14 @@ namespace Nodus
     };
     Change threshold_change(const std::vector<double> &site_pressure) const;
     void   freeze_threshold(const std::vector<double> &site_pressure);
+    /// mu lambda_s of every local site: as it is frozen, and as it would be with @p site_pressure.
+    const std::vector<double> &thresholds() const
+    {
+      return now_.threshold;
+    }
+    std::vector<double> thresholds_at(const std::vector<double> &site_pressure) const;
+    /// Freezes these instead, which need not belong to a pressure; right at owned sites. Collective.
+    void freeze(std::vector<double> thresholds);
     /// A pair has friction at all; friction that depends on the pressure; on position or slip rate.
     bool has_friction() const
     {
@@ -151,15 +159,29 @@ namespace Nodus
     {
       unsigned int              changes = 0;     ///< on all ranks
       unsigned int              period  = 0;     ///< > 0: this status vector was visited that many passes ago
-      bool                      cycles  = false; ///< visited again although sites change one at a time, or too often
+      bool                      cycles  = false; ///< merged loop: visited again too often
+      unsigned int              frozen  = 0;     ///< sites that keep their status from here on, on all ranks
       std::vector<unsigned int> sites;           ///< of this rank that changed
     };
     /// Tests every site and changes those that contradict their status (eq. 2, 3, 7, 8); begin_loop() comes first. Once
     /// a status vector comes back, only the contradicting site of lowest order (ContactSurfaces) changes in a pass:
     /// Murty's least-index rule, which is finite for frictionless contact at frozen geometry where changing all at once
-    /// may cycle. A merged loop has no such rule and cycles when vectors come back time and again. Collective.
+    /// may cycle. Where one comes back even so (friction, statuses of integration points), no vector may satisfy all
+    /// sites: those that take part in the cycle, and in later ones, are frozen with the status that they contradict
+    /// least; the others change all at once again.
+    /// A merged loop has no such rules and cycles when vectors come back time and again. Collective.
     /// @p closing_only: sites that penetrate close, nothing else changes (an iterate whose pressures mean nothing yet).
     Update update(const StatusInput &input, bool closing_only = false);
+
+    /// Largest violation of the sites that were frozen in this loop, relative to the pressure of the pair or to the
+    /// cone, where it is, and how many have one. Collective.
+    struct Violation
+    {
+      double       value = 0.;
+      unsigned int site  = dealii::numbers::invalid_unsigned_int; ///< on the rank that owns it, invalid on others
+      unsigned int sites = 0;                                     ///< on all ranks
+    };
+    Violation frozen_violation(const StatusInput &input) const;
 
     /// Empties the ledger, at the start of an increment.
     void                begin_increment();
@@ -203,8 +225,11 @@ namespace Nodus
     void              update_floor();
     void              note_friction();
     std::vector<char> code() const;
-    Contradiction     contradiction(const StatusInput &input, unsigned int site, double tolerance) const;
-    void              find_period(Update &update);
+    /// How a site contradicts its status, and by how much: relative to @p pressure of the pair, or to the cone.
+    Contradiction       contradiction(const StatusInput &input, unsigned int site, double pressure, double &size) const;
+    std::vector<double> largest_pressures(const StatusInput &input) const;
+    void                find_period(Update &update);
+    unsigned int        freeze(const std::vector<unsigned int> &sites);
 
     const std::vector<ContactPairParameters> &pairs_;
     const ContactSurfaces                    &surfaces_;
@@ -216,9 +241,11 @@ namespace Nodus
     double                                    resolved_ = 0.;
     std::vector<StatusLedger>                 ledger_;
     std::vector<std::vector<char>>            visited_;
-    std::vector<char>                         opened_;       ///< in this status loop
+    std::vector<char>                         opened_; ///< in this status loop
+    std::vector<char>                         frozen_; ///< in this status loop
+    std::vector<std::array<double, 3>>        seen_; ///< last violation while open, slip, stick since a cycle; -1: none
     std::vector<char>                         had_friction_; ///< at the last test: the iterate knows of friction there
-    bool                                      one_at_a_time_ = false, merged_ = false;
+    bool                                      one_at_a_time_ = false, freezes_ = false, merged_ = false;
     unsigned int                              returns_ = 0; ///< to a visited vector, in this loop
   };
 } // namespace Nodus

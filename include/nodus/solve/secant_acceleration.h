@@ -1,0 +1,41 @@
+#ifndef nodus_solve_secant_acceleration_h
+#define nodus_solve_secant_acceleration_h
+
+#include <deal.II/base/mpi.h>
+
+#include <vector>
+
+namespace Nodus
+{
+  /// Next value of a fixed-point iteration x -> G(x) by the crossed secant method (Ramiere & Helfer 2015): with the
+  /// error f = G(x) - x of two passes,
+  ///
+  ///     x_next = G - omega f,   omega = (G - G') . (f - f') / |f - f'|^2.
+  ///
+  /// A map that contracts, or grows, by one factor in every direction is solved in one secant, which is what thresholds
+  /// of friction do along a load path (factor -mu/s, theory section 5.4).
+  class SecantAcceleration
+  {
+  public:
+    explicit SecantAcceleration(MPI_Comm communicator)
+        : communicator_(communicator)
+    {
+    }
+
+    /// @p value x and its image @p image G(x), each rank its part. Without a pass before it is G. Collective.
+    std::vector<double> next(const std::vector<double> &value, const std::vector<double> &image);
+
+    /// |f| of this pass over that of the one before, 0 in the first pass: < 1 where the iteration contracts.
+    double contraction() const
+    {
+      return contraction_;
+    }
+
+  private:
+    MPI_Comm            communicator_;
+    std::vector<double> image_, error_;
+    double              contraction_ = 0., norm_ = 0.;
+  };
+} // namespace Nodus
+
+#endif
