@@ -14,6 +14,16 @@ namespace Nodus
     constexpr unsigned int patience = 8;
   } // namespace
 
+  std::string MergedLoops::names() const
+  {
+    std::string text;
+    for (const auto &[name, is_merged] :
+         {std::make_pair("geometry", geometry), {"threshold", threshold}, {"status", status}})
+      if (is_merged)
+        text += (text.empty() ? "" : ", ") + std::string(name);
+    return text;
+  }
+
   /// The loops as the parameters ask for them; where a merged iteration fails, once more with the geometry as a loop,
   /// and at last with all three as loops.
   void ContactProblem::Implementation::solve_increment()
@@ -35,6 +45,7 @@ namespace Nodus
           fewer = {false, merged.threshold, merged.status};
         console.remark(std::string("merged iteration given up: ") + failure.what() + "; again with " +
                        (fewer.any() ? "a geometry loop" : "three loops"));
+        diagnosis.end_attempt(failure.what());
         roll_back();
         merged = fewer;
         ++counts.fallbacks;
@@ -46,6 +57,7 @@ namespace Nodus
   void ContactProblem::Implementation::solve_loops()
   {
     status->begin_increment();
+    diagnosis.begin_attempt(merged.names());
     const Newton newton(parameters.newton, merged.any() ? patience : 0);
 
     FixedPointLoop geometry("geometry", parameters.geometry_loop);
@@ -76,7 +88,9 @@ namespace Nodus
                        {
                          console.newton_iteration(pass, iteration, norms, krylov);
                          pass.fallbacks = counts.fallbacks;
-                         tables->add(Tables::Iteration{path.increment(), time, pass, iteration, norms, krylov});
+                         const Tables::Iteration row{path.increment(), time, pass, iteration, norms, krylov};
+                         tables->add(row);
+                         diagnosis.add(row);
                          heed_signals();
                          counts.newton += iteration > 0;
                          counts.krylov += krylov;
@@ -88,6 +102,12 @@ namespace Nodus
     } while (!geometry_converged(geometry));
   }
 
+  void
+  ContactProblem::Implementation::note_pass(const FixedPointLoop &loop, const double value, const std::string &worst)
+  {
+    diagnosis.add(Diagnosis::Pass{loop.name(), loop.counter() + 1, value, loop.tolerance(), worst});
+  }
+
   bool ContactProblem::Implementation::statuses_converged(FixedPointLoop &loop)
   {
     ++counts.status;
@@ -95,6 +115,7 @@ namespace Nodus
       return true;
     const Status::Update update = update_statuses();
     tables->add_status_changes(update.changes);
+    note_pass(loop, update.changes, first_changed);
     return loop.finished(update.changes, first_changed);
   }
 
@@ -103,6 +124,10 @@ namespace Nodus
     const auto           timer  = profile.time(Phase::status);
     const Status::Update update = status->update(
         status_input(parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state), closing_only);
+    std::vector<char> statuses(status->size());
+    for (unsigned int s = 0; s < statuses.size(); ++s)
+      statuses[s] = static_cast<char>(status->status(s));
+    diagnosis.add_statuses(statuses);
     if (update.changes > 0)
     {
       const std::vector<std::string> loci = site_loci(update.sites, 3);
@@ -111,7 +136,8 @@ namespace Nodus
       if (update.cycles)
         throw SolverFailure(
             (merged.status ? "the statuses cycle" : "the status loop cycles, also with one change at a time") +
-            std::string("; the nodes that change back and forth: ") + cycling);
+                std::string("; the nodes that change back and forth: ") + cycling,
+            SolverFailure::Kind::status_cycle);
       if (update.period > 0)
       {
         cycling.clear();
@@ -138,6 +164,7 @@ namespace Nodus
     std::ostringstream   text;
     text << "threshold changes by " << change.value << ", most at " << worst;
     console.remark(text.str());
+    note_pass(loop, change.value, worst);
     return loop.finished(change.value, worst);
   }
 
@@ -156,13 +183,15 @@ namespace Nodus
     text << "geometry changes by " << value << " of the step, most at " << worst;
     console.remark(text.str());
 
+    note_pass(loop, value, worst);
     // The solution of two passes ago again, while it differs from that of the last one: a 2-cycle.
     if (loop.counter() >= 3 && value > parameters.geometry_loop.tolerance &&
         largest_difference(solution.block(0), u_before_geometry) <= 1e-6 * change)
       throw SolverFailure("the geometry loop cycles with period 2, criterion " + std::to_string(value) + ", worst at " +
-                          worst +
-                          ": a slave node crosses an edge of the faceted master and back; try 'Normal = averaged' or "
-                          "smaller increments");
+                              worst +
+                              ": a slave node crosses an edge of the faceted master and back; try 'Normal = averaged' "
+                              "or smaller increments",
+                          SolverFailure::Kind::geometry_cycle);
     return loop.finished(value, worst);
   }
 
@@ -196,6 +225,7 @@ namespace Nodus
       slip.push_back(contact->slip(state, s));
     status->commit(slip);
     solid->commit();
+    audit_energies();
     committed                 = solution;
     committed_pairing         = pairing;
     committed_area            = weights.area();
