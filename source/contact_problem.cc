@@ -6,7 +6,6 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_values.h>
 
 #include <algorithm>
 #include <limits>
@@ -34,28 +33,6 @@ namespace Nodus
           stiffness[p] = std::min(stiffness[p], materials[body]->youngs_modulus());
       return stiffness;
     }
-
-    std::vector<Point> node_positions(const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping)
-    {
-      const auto             &fe    = dof_handler.get_fe();
-      const dealii::IndexSet &owned = dof_handler.locally_owned_dofs();
-      dealii::FEValues<dim>   values(mapping,
-                                   fe,
-                                   dealii::Quadrature<dim>(fe.base_element(0).get_unit_support_points()),
-                                   dealii::update_quadrature_points);
-      std::vector<Point>      positions(owned.n_elements() / dim);
-      std::vector<DoFIndex>   dofs(fe.n_dofs_per_cell());
-      for (const auto &cell : dof_handler.active_cell_iterators())
-        if (!cell->is_artificial())
-        {
-          values.reinit(cell);
-          cell->get_dof_indices(dofs);
-          for (unsigned int node = 0; node < values.n_quadrature_points; ++node)
-            if (const DoFIndex i = dofs[fe.component_to_system_index(0, node)]; owned.is_element(i))
-              positions[owned.index_within_set(i) / dim] = values.quadrature_point(node);
-        }
-      return positions;
-    }
   } // namespace
 
   ContactProblem::Implementation::Implementation(const Parameters &p, MPI_Comm comm, std::ostream &log)
@@ -69,6 +46,7 @@ namespace Nodus
       , materials(make_materials(parameters.bodies))
       , path(parameters.load_stepping)
       , checkpoints(parameters.output.results_folder, comm)
+      , diagnosis(parameters, comm)
   {
     if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 && !parameters.contact_pairs.empty())
       balance_contact(parameters.contact_pairs, *mapping, bodies);
@@ -98,7 +76,7 @@ namespace Nodus
     layout.reinit(committed);
     layout.reinit(system.rhs);
     relevant_u.reinit(layout.owned[0], relevant, communicator);
-    for (Vector *v : {&internal, &external, &contact_force, &reaction, &released})
+    for (Vector *v : {&internal, &external, &contact_force, &reaction, &released, &out_of_balance, &committed_applied})
       v->reinit(layout.owned[0], communicator);
 
     length_scale = 0.;
@@ -109,6 +87,7 @@ namespace Nodus
     }
     for (Vector *v : {&u_geometry, &u_before_geometry})
       v->reinit(layout.owned[0], communicator);
+    committed_site_force.resize(surfaces->n_sites());
     gather_state();
     profile.set_ground(Phase::other);
   }
@@ -138,7 +117,7 @@ namespace Nodus
     std::vector<Tables::Reaction> table;
     for (const auto &[name, force] : reactions)
       table.push_back({name, force});
-    tables->add(increment, time, resultants, table, counts);
+    tables->add(increment, time, resultants, table, energies, counts);
     const unsigned int interval = parameters.output.vtu_interval;
     if (vtu && (last || (interval > 0 && increment % interval == 0)))
     {
@@ -193,11 +172,12 @@ namespace Nodus
       summary();
       solid->make_sparsity(system.bulk);
       linear_solver =
-          make_linear_solver(parameters.linear_solver, surfaces->layout(), node_positions(dof_handler, *mapping));
+          make_linear_solver(parameters.linear_solver, surfaces->layout(), OwnedNodes(dof_handler, *mapping).X);
       linear_solver->set_profile(&profile);
       if (parameters.output.write_vtu)
         vtu = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, *mapping, *solid);
       tables = std::make_unique<Tables>(parameters.output.results_folder, communicator);
+      diagnosis.begin_run();
     }
     if (restart)
       read_checkpoint();

@@ -21,6 +21,16 @@ namespace Nodus
     constexpr double tolerated_violation = 1e-3;
   } // namespace
 
+  std::string MergedLoops::names() const
+  {
+    std::string text;
+    for (const auto &[name, is_merged] :
+         {std::make_pair("geometry", geometry), {"threshold", threshold}, {"status", status}})
+      if (is_merged)
+        text += (text.empty() ? "" : ", ") + std::string(name);
+    return text;
+  }
+
   /// The loops as the parameters ask for them; where a merged iteration fails, once more with the geometry as a loop,
   /// and at last with all three as loops. Where thresholds were to be a loop and that fails, they follow the pressure.
   void ContactProblem::Implementation::solve_increment()
@@ -42,6 +52,7 @@ namespace Nodus
           fewer = {false, merged.threshold, merged.status};
         console.remark(std::string("merged iteration given up: ") + failure.what() + "; again with " +
                        (fewer.any() ? "a geometry loop" : "three loops"));
+        diagnosis.end_attempt(failure.what());
         roll_back();
         merged = fewer;
         ++counts.fallbacks;
@@ -66,6 +77,7 @@ namespace Nodus
   void ContactProblem::Implementation::solve_loops()
   {
     status->begin_increment();
+    diagnosis.begin_attempt(merged.names());
     const Newton newton(parameters.newton, merged.any() ? patience : 0);
 
     FixedPointLoop geometry("geometry", parameters.geometry_loop);
@@ -98,7 +110,9 @@ namespace Nodus
                        {
                          console.newton_iteration(pass, iteration, norms, krylov);
                          pass.fallbacks = counts.fallbacks;
-                         tables->add(Tables::Iteration{path.increment(), time, pass, iteration, norms, krylov});
+                         const Tables::Iteration row{path.increment(), time, pass, iteration, norms, krylov};
+                         tables->add(row);
+                         diagnosis.add(row);
                          heed_signals();
                          counts.newton += iteration > 0;
                          counts.krylov += krylov;
@@ -110,6 +124,12 @@ namespace Nodus
     } while (!geometry_converged(geometry));
   }
 
+  void
+  ContactProblem::Implementation::note_pass(const FixedPointLoop &loop, const double value, const std::string &worst)
+  {
+    diagnosis.add(Diagnosis::Pass{loop.name(), loop.counter() + 1, value, loop.tolerance(), worst});
+  }
+
   bool ContactProblem::Implementation::statuses_converged(FixedPointLoop &loop)
   {
     ++counts.status;
@@ -117,6 +137,7 @@ namespace Nodus
       return true;
     const Status::Update update = update_statuses();
     tables->add_status_changes(update.changes);
+    note_pass(loop, update.changes, first_changed);
     if (update.frozen > 0)
       console.remark("the statuses cycle: " + std::to_string(update.frozen) +
                      " sites keep the one that they contradict least: " + cycling);
@@ -132,7 +153,8 @@ namespace Nodus
            << " of the largest pressure or of the cone, at " << locus;
       if (violation.value > tolerated_violation)
         throw SolverFailure("the status loop cycles: " + text.str() + ", more than " +
-                            dealii::Utilities::to_string(tolerated_violation));
+                                dealii::Utilities::to_string(tolerated_violation),
+                            SolverFailure::Kind::status_cycle);
       console.remark("warning: " + text.str());
     }
     return true;
@@ -143,13 +165,18 @@ namespace Nodus
     const auto           timer  = profile.time(Phase::status);
     const Status::Update update = status->update(
         status_input(parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state), closing_only);
+    std::vector<char> statuses(status->size());
+    for (unsigned int s = 0; s < statuses.size(); ++s)
+      statuses[s] = static_cast<char>(status->status(s));
+    diagnosis.add_statuses(statuses);
     if (update.changes > 0)
     {
       const std::vector<std::string> loci = site_loci(update.sites, 3);
       first_changed                       = loci.front();
       console.remark(std::to_string(update.changes) + " statuses changed, first at " + first_changed);
       if (update.cycles)
-        throw SolverFailure("the statuses cycle; the nodes that change back and forth: " + cycling);
+        throw SolverFailure("the statuses cycle; the nodes that change back and forth: " + cycling,
+                            SolverFailure::Kind::status_cycle);
       if (update.period > 0)
       {
         cycling.clear();
@@ -180,6 +207,7 @@ namespace Nodus
     if (secant.contraction() > 0.)
       text << ", " << secant.contraction() << " times the change before";
     console.remark(text.str());
+    note_pass(loop, change.value, worst);
     if (loop.finished(change.value, worst))
       return true;
     status->freeze(std::move(next));
@@ -200,6 +228,7 @@ namespace Nodus
     std::ostringstream text;
     text << "geometry changes by " << value << " of the step, most at " << worst;
     console.remark(text.str());
+    note_pass(loop, value, worst);
     const double before = loop.value();
     if (loop.finished(value, worst))
       return true;
@@ -208,10 +237,11 @@ namespace Nodus
     // pairing half-way between the two, as is a loop that does not contract; one that comes back is no fixed point.
     const bool cycle = loop.counter() >= 3 && largest_difference(solution.block(0), u_before_geometry) <= 1e-6 * change;
     if (cycle && ++geometry_cycles > tolerated_geometry_cycles)
-      throw SolverFailure("the geometry loop cycles with period 2, criterion " + std::to_string(value) + ", worst at " +
-                          worst +
-                          ": a slave node crosses an edge of the faceted master and back; try 'Normal = averaged' or "
-                          "smaller increments");
+      throw SolverFailure(
+          "the geometry loop cycles with period 2, criterion " + std::to_string(value) + ", worst at " + worst +
+              ": a slave node crosses an edge of the faceted master and back; try 'Normal = averaged' or "
+              "smaller increments",
+          SolverFailure::Kind::geometry_cycle);
     if (cycle || (loop.counter() >= 3 && value > slow_contraction * before))
     {
       console.remark(cycle ? "the geometry loop cycles with period 2: the next pass starts half-way"
@@ -252,6 +282,7 @@ namespace Nodus
       slip.push_back(contact->slip(state, s));
     status->commit(slip);
     solid->commit();
+    audit_energies();
     committed                 = solution;
     committed_pairing         = pairing;
     committed_area            = weights.area();

@@ -14,6 +14,7 @@ namespace Nodus
     while (!path.finished())
     {
       console.begin_increment(path.increment(), path.time(), path.target());
+      diagnosis.begin_increment(path.increment(), path.time(), path.target());
       impose(path.target());
       try
       {
@@ -24,9 +25,12 @@ namespace Nodus
         std::ostringstream reason;
         reason << "geometry pass " << pass.geometry << ", threshold pass " << pass.threshold << ", status pass "
                << pass.status << ": " << failure.what();
+        diagnosis.end_attempt(failure.what());
+        const bool        again = path.cut_back();
+        const std::string hint  = again ? "" : diagnose(failure);
         roll_back();
-        if (!path.cut_back())
-          give_up(reason.str(), path.increment() > first);
+        if (!again)
+          give_up(reason.str(), hint, path.increment() > first);
         console.remark(reason.str() + "; the increment is halved");
         continue;
       }
@@ -69,6 +73,12 @@ namespace Nodus
                      ": they slid off the master surface, or went through it in too large an increment");
   }
 
+  /// What is left at time @p t, in the interval at hand, of the reactions that are released in it.
+  double ContactProblem::Implementation::release_fraction(const double t) const
+  {
+    return (path.interval_end() - t) / (path.interval_end() - path.interval_begin());
+  }
+
   /// Sets the boundary conditions of time @p t. Where a displacement was prescribed until the interval began, the force
   /// that held it goes to zero in the course of the interval.
   void ContactProblem::Implementation::impose(const double t)
@@ -79,14 +89,16 @@ namespace Nodus
     const auto  &constraints = boundary_conditions->homogeneous_constraints();
     const double interval_1  = parameters.load_stepping.interval_ends.front();
     status->set_resolved_interference(std::min(1., t / interval_1));
-    const double rest = (path.interval_end() - t) / (path.interval_end() - path.interval_begin());
+    const double rest = release_fraction(t);
     for (const DoFIndex i : surfaces->layout().owned[0])
       released(i) = constraints.is_constrained(i) ? 0. : rest * reaction(i);
     released.compress(dealii::VectorOperation::insert);
   }
 
-  /// The state is the last one that converged, in this run if @p converged_before.
-  void ContactProblem::Implementation::give_up(const std::string &reason, const bool converged_before)
+  /// The state is the last one that converged, in this run if @p converged_before. @p hint: where to read more.
+  void ContactProblem::Implementation::give_up(const std::string &reason,
+                                               const std::string &hint,
+                                               const bool         converged_before)
   {
     tables->add_failure();
     if (vtu && converged_before)
@@ -98,13 +110,14 @@ namespace Nodus
     std::ostringstream message;
     message << "increment " << path.increment() << " (t = " << path.target() << "), " << reason
             << ". The last converged state is t = " << path.time()
-            << (path.increment() > 1 ? "" : " (only convergence.csv was written)");
+            << (path.increment() > 1 ? "" : " (no increment converged)");
     if (!parameters.load_stepping.cut_back)
       message << ". Give more Increments, or set 'Load stepping/Cut back = true'";
     else
       message << ". The increment was cut back to " << path.target() - path.time()
               << "; if the case itself is right, give a smaller 'Load stepping/Minimum increment' or more "
                  "'Newton/Maximum iterations'";
+    message << hint;
     throw SolverFailure(message.str());
   }
 } // namespace Nodus

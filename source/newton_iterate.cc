@@ -257,12 +257,11 @@ namespace Nodus
                                    external.linfty_norm(),
                                    contact_force.linfty_norm(),
                                    relative_force_floor * stiffness_scale * length});
-    double       force = 0.;
     for (const auto i : surfaces->layout().owned[0])
-      if (!constraints.is_constrained(i))
-        force = std::max(force, std::abs(internal(i) - external(i) + contact_force(i)));
-    force            = dealii::Utilities::MPI::max(force, communicator);
-    norms.force      = scale > 0. ? force / scale : 0.;
+      out_of_balance(i) = constraints.is_constrained(i) ? 0. : internal(i) - external(i) + contact_force(i);
+    out_of_balance.compress(dealii::VectorOperation::insert);
+    force_scale      = scale;
+    norms.force      = scale > 0. ? out_of_balance.linfty_norm() / scale : 0.;
     norms.contact    = contact->norm(residual, length);
     norms.prescribed = prescribed.linfty_norm() / length;
     return norms;
@@ -296,8 +295,13 @@ namespace Nodus
     const auto                 timer  = profile.time(Phase::solver_iterations);
     const LinearSolver::Report report = solve_system(correction, relative_tolerance);
     if (!report.null_pivots.empty())
+    {
+      null_pivot = report.null_pivots.front();
       throw SolverFailure("the system is singular (" + std::to_string(report.null_pivots.size()) +
-                          " null pivots), first at " + unknown_locus(report.null_pivots.front()));
+                              " null pivots), first at " + unknown_locus(null_pivot),
+                          null_pivot < surfaces->layout().n_u ? SolverFailure::Kind::free_body
+                                                              : SolverFailure::Kind::over_constraint);
+    }
     const long surplus = report.negative_pivots - 3 * static_cast<long>(surfaces->layout().n_slave_nodes);
     if (report.negative_pivots >= 0 && surplus != 0)
       console.remark("the tangent has " + std::to_string(std::abs(surplus)) + " negative eigenvalues " +

@@ -28,13 +28,15 @@ namespace Nodus
       std::map<std::string, std::string> model; ///< that the state belongs to
       LoadStepping                       path{LoadSteppingParameters()};
       double                             stiffness_scale = 0.;
+      Energies                           energies;
       Tables::Rows                       rows;
       VtuOutput::Series                  series;
 
       template <typename Archive>
       void serialize(Archive &archive, const unsigned int)
       {
-        archive &model &path &stiffness_scale &rows.contact &rows.reactions &rows.iterations &series;
+        archive &model &path &stiffness_scale &energies &rows.contact &rows.reactions &rows.energies &rows
+            .iterations                                                                              &series;
       }
     };
 
@@ -77,13 +79,24 @@ namespace Nodus
       return signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "signal " + std::to_string(signal);
     }
 
-    /// State of a slave node in a checkpoint: its Status::Record, lambda, Lambda, the area that they refer to and the
-    /// two tangents that Lambda refers to. It travels as vectors like the displacement, three numbers in each, zeros at
-    /// the end.
-    constexpr unsigned int n_status       = std::tuple_size<Status::Record>::value,
-                           n_node_vectors = (n_status + 4 + 2 * dim + dim - 1) / dim;
-    using NodeState                       = std::array<double, dim * n_node_vectors>;
-    using NodeVectors                     = std::array<Vector, n_node_vectors>;
+    /// State of a contact site in a checkpoint: its Status::Record and the force on the slave.
+    constexpr unsigned int n_status = std::tuple_size<Status::Record>::value, n_site = n_status + dim;
+    using SiteState = std::array<double, n_site>;
+
+    /// State of a slave node: that of the site, lambda, Lambda, the area that they refer to and the two tangents that
+    /// Lambda refers to. It travels as vectors like the displacement, three numbers in each, zeros at the end.
+    constexpr unsigned int n_node_vectors = (n_site + 4 + 2 * dim + dim - 1) / dim;
+    /// Vectors of all nodes: displacement, reactions to be released, applied forces.
+    constexpr unsigned int n_displacement_vectors = 3;
+    using NodeState                               = std::array<double, dim * n_node_vectors>;
+    using NodeVectors                             = std::array<Vector, n_node_vectors>;
+
+    SiteState site_state(const Status::Record &record, const Vector3 &force)
+    {
+      SiteState state;
+      std::copy_n(force.begin_raw(), dim, std::copy(record.begin(), record.end(), state.begin()));
+      return state;
+    }
 
     using Cell = dealii::DoFHandler<dim>::active_cell_iterator;
 
@@ -136,7 +149,7 @@ namespace Nodus
   void ContactProblem::Implementation::write_checkpoint()
   {
     const auto timer = profile.time(Phase::output);
-    Common     common{model_of(parameters), path, committed_stiffness_scale, tables->rows(), {}};
+    Common     common{model_of(parameters), path, committed_stiffness_scale, energies, tables->rows(), {}};
     if (vtu)
       common.series = vtu->series();
 
@@ -145,11 +158,11 @@ namespace Nodus
       v.reinit(surfaces->layout().owned[0], communicator);
     for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
     {
-      NodeState            state{};
-      const Status::Record record     = status->kept(k);
-      const DoFIndex       multiplier = surfaces->multiplier(k);
-      double              *value      = std::copy(record.begin(), record.end(), state.begin());
-      *value++                        = committed.block(1)(multiplier);
+      NodeState       state{};
+      const SiteState site       = site_state(status->kept(k), committed_site_force[k]);
+      const DoFIndex  multiplier = surfaces->multiplier(k);
+      double         *value      = std::copy(site.begin(), site.end(), state.begin());
+      *value++                   = committed.block(1)(multiplier);
       for (unsigned int i = 0; i < 2; ++i)
         *value++ = committed.block(2)(2 * multiplier + i);
       *value++ = committed_area[k];
@@ -158,18 +171,19 @@ namespace Nodus
       for (unsigned int i = 0; i < state.size(); ++i)
         owned[i / dim](surfaces->nodes()[k].dofs[i % dim]) = state[i];
     }
-    std::array<Vector, 2 + n_node_vectors> relevant_vectors;
-    const auto                             with_ghosts = [&](const Vector &v, Vector &relevant_v)
+    std::array<Vector, n_displacement_vectors + n_node_vectors> relevant_vectors;
+    const auto                                                  with_ghosts = [&](const Vector &v, Vector &relevant_v)
     {
       relevant_v.reinit(surfaces->layout().owned[0], relevant, communicator);
       relevant_v = v;
     };
     with_ghosts(committed.block(0), relevant_vectors[0]);
     with_ghosts(reaction, relevant_vectors[1]);
+    with_ghosts(committed_applied, relevant_vectors[2]);
     for (unsigned int n = 0; n < n_node_vectors; ++n)
     {
       owned[n].compress(dealii::VectorOperation::insert);
-      with_ghosts(owned[n], relevant_vectors[2 + n]);
+      with_ghosts(owned[n], relevant_vectors[n_displacement_vectors + n]);
     }
 
     Checkpoints::Piece               piece;
@@ -185,8 +199,9 @@ namespace Nodus
           for (const DoFIndex i : dofs)
             values.push_back(v(i));
         // only cells with slave nodes have the state of these; tangents are never zero
-        if (std::all_of(values.begin() + 2 * dofs.size(), values.end(), [](const double v) { return v == 0.; }))
-          values.resize(2 * dofs.size());
+        const std::size_t n_always = n_displacement_vectors * dofs.size();
+        if (std::all_of(values.begin() + n_always, values.end(), [](const double v) { return v == 0.; }))
+          values.resize(n_always);
         piece.cells.emplace_back(cell->id().to_binary<dim>(), std::move(values));
         if (!histories[n_cells].empty())
           piece.histories.emplace_back(cell->id().to_binary<dim>(), std::move(histories[n_cells]));
@@ -197,8 +212,8 @@ namespace Nodus
       std::vector<double> values;
       for (unsigned int s = first; s < first + n_points(*surfaces, first); ++s)
       {
-        const Status::Record record = status->kept(s);
-        values.insert(values.end(), record.begin(), record.end());
+        const SiteState state = site_state(status->kept(s), committed_site_force[s]);
+        values.insert(values.end(), state.begin(), state.end());
       }
       piece.faces.emplace_back(face, std::move(values));
     }
@@ -225,6 +240,7 @@ namespace Nodus
                         communicator);
     path.continue_from(common.path);
     committed_stiffness_scale = common.stiffness_scale;
+    energies                  = common.energies;
     tables->continue_from(common.rows);
     if (vtu)
       vtu->continue_from(common.series);
@@ -253,13 +269,13 @@ namespace Nodus
     NodeVectors node_vectors;
     for (Vector &v : node_vectors)
       v.reinit(surfaces->layout().owned[0], communicator);
-    std::vector<Vector *> vectors = {&committed.block(0), &reaction};
+    std::vector<Vector *> vectors = {&committed.block(0), &reaction, &committed_applied};
     for (Vector &v : node_vectors)
       vectors.push_back(&v);
 
-    std::vector<Status::Record> records(surfaces->n_sites());
-    std::vector<DoFIndex>       dofs(fe.n_dofs_per_cell());
-    std::size_t                 missing = cells.size() + faces.size();
+    std::vector<SiteState> sites(surfaces->n_sites());
+    std::vector<DoFIndex>  dofs(fe.n_dofs_per_cell());
+    std::size_t            missing = cells.size() + faces.size();
     for (const auto &file : pieces)
     {
       const Checkpoints::Piece piece = Checkpoints::read(file);
@@ -280,7 +296,7 @@ namespace Nodus
         {
           --missing;
           for (unsigned int i = 0; i < values.size(); ++i)
-            records[face->second + i / n_status][i % n_status] = values[i];
+            sites[face->second + i / n_site][i % n_site] = values[i];
         }
     }
     throw_on_every_rank(missing == 0 ? "" : "the checkpoint does not cover the mesh; begin without --restart",
@@ -294,8 +310,8 @@ namespace Nodus
       NodeState state;
       for (unsigned int i = 0; i < state.size(); ++i)
         state[i] = node_vectors[i / dim](surfaces->nodes()[k].dofs[i % dim]);
-      std::copy_n(state.begin(), n_status, records[k].begin());
-      const double  *value           = state.data() + n_status;
+      std::copy_n(state.begin(), n_site, sites[k].begin());
+      const double  *value           = state.data() + n_site;
       const DoFIndex multiplier      = surfaces->multiplier(k);
       committed.block(1)(multiplier) = *value++;
       for (unsigned int i = 0; i < 2; ++i)
@@ -308,7 +324,14 @@ namespace Nodus
     for (unsigned int b = 0; b < 3; ++b)
       committed.block(b).compress(dealii::VectorOperation::insert);
     reaction.compress(dealii::VectorOperation::insert);
+    committed_applied.compress(dealii::VectorOperation::insert);
     committed_pairing.set_tangents(tangents);
+    std::vector<Status::Record> records(sites.size());
+    for (unsigned int s = 0; s < sites.size(); ++s)
+    {
+      std::copy_n(sites[s].begin(), n_status, records[s].begin());
+      std::copy_n(sites[s].begin() + n_status, dim, committed_site_force[s].begin_raw());
+    }
     status->restore(records);
   }
 

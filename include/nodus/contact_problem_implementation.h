@@ -5,10 +5,13 @@
 #include <nodus/bulk/material.h>
 #include <nodus/bulk/solid_assembler.h>
 #include <nodus/contact/contact_assembler.h>
+#include <nodus/contact/rigid_motions.h>
 #include <nodus/contact_problem.h>
 #include <nodus/mesh/bodies.h>
 #include <nodus/output/checkpoint.h>
 #include <nodus/output/console.h>
+#include <nodus/output/diagnosis.h>
+#include <nodus/output/energies.h>
 #include <nodus/output/profile.h>
 #include <nodus/output/tables.h>
 #include <nodus/output/vtu.h>
@@ -31,10 +34,13 @@ namespace Nodus
     {
       return geometry || threshold || status;
     }
+    /// "geometry, status" and the like, empty for none.
+    std::string names() const;
   };
 
   /// Everything a run owns. contact_problem.cc builds it and reports, load_path.cc goes from increment to increment,
-  /// load_increment.cc holds the three nested loops, newton_iterate.cc what Newton sees, restart.cc the checkpoints.
+  /// load_increment.cc holds the three nested loops, newton_iterate.cc what Newton sees, restart.cc the checkpoints,
+  /// failed_state.cc what is kept of an increment that fails.
   struct ContactProblem::Implementation : public NewtonProblem
   {
     Implementation(const Parameters &parameters, MPI_Comm communicator, std::ostream &log);
@@ -46,6 +52,7 @@ namespace Nodus
     void           solve_increment();
     void           solve_loops();
     void           pair_surfaces();
+    void           note_pass(const FixedPointLoop &loop, double value, const std::string &worst);
     bool           geometry_converged(FixedPointLoop &loop);
     bool           threshold_converged(FixedPointLoop &loop, SecantAcceleration &secant);
     bool           statuses_converged(FixedPointLoop &loop);
@@ -69,9 +76,22 @@ namespace Nodus
     double                   largest_difference(const Vector &a, const Vector &b, std::string *worst = nullptr) const;
     std::string              unknown_locus(DoFIndex flat_index) const;
     void                     commit();
+    Vector                   applied_forces() const;
+    void                     audit_energies();
+    double                   negligible_dissipation() const;
+    void                     warn_of_energies(const Energies &increment, const std::vector<unsigned int> &creating);
+    double                   release_fraction(double t) const;
     void                     roll_back();
     void                     warn_of_lost_partners();
-    [[noreturn]] void        give_up(const std::string &reason, bool converged_before);
+    std::string              diagnose(const SolverFailure &failure);
+    FailureEvidence          evidence_of(const SolverFailure &failure);
+    void                     find_worst_nodes(const OwnedNodes &nodes, FailureEvidence &evidence) const;
+    void                     find_changing_sites(FailureEvidence &evidence) const;
+    void                     find_partners(FailureEvidence &evidence) const;
+    std::vector<float>       find_distorted_cells(FailureEvidence &evidence);
+    void                     find_repeated_constraint(FailureEvidence &evidence) const;
+    void                     write_failed_state(const std::string &name, const std::vector<float> &det_F);
+    [[noreturn]] void        give_up(const std::string &reason, const std::string &hint, bool converged_before);
     void                     write_checkpoint();
     void                     read_checkpoint();
     void                     read_pieces(const std::vector<std::filesystem::path> &pieces);
@@ -114,14 +134,20 @@ namespace Nodus
     double                        stiffness_scale = 0.; ///< largest diagonal entry of the first bulk tangent
     double                        length_scale; ///< displacements are measured against this when the step moves nothing
 
-    double              committed_stiffness_scale = 0.;
-    Vector              reaction; ///< of what was prescribed when the last interval ended; what is released sheds it
-    Vector              released; ///< what is left of it now where nothing is prescribed any more
-    Pairing             committed_pairing;          ///< at the start of the load step
-    std::vector<double> nodal_area, committed_area; ///< that the multipliers of solution and committed refer to
+    double               committed_stiffness_scale = 0.;
+    Vector               reaction; ///< of what was prescribed when the last interval ended; what is released sheds it
+    Vector               released; ///< what is left of it now where nothing is prescribed any more
+    Energies             energies; ///< up to the last converged increment
+    Vector               committed_applied;          ///< applied_forces() at its end
+    std::vector<Vector3> committed_site_force;       ///< on the slave there, right at owned sites
+    Pairing              committed_pairing;          ///< at the start of the load step
+    std::vector<double>  nodal_area, committed_area; ///< that the multipliers of solution and committed refer to
 
     ContactState    state;
     ContactResidual residual;
+    Vector          out_of_balance;   ///< nodal forces of the last iterate that has any, zero where prescribed
+    double          force_scale = 0.; ///< that they are relative to in the norms
+    DoFIndex        null_pivot  = dealii::numbers::invalid_dof_index; ///< flat index, of a singular system
     Vector          u_geometry, u_before_geometry; ///< displacements of this and the previous pairing
     std::string     first_changed, cycling;        ///< sites of the last change of statuses, and of the last cycle
     unsigned int    geometry_cycles = 0;           ///< with period 2, in the geometry loop at hand
@@ -142,6 +168,7 @@ namespace Nodus
     std::unique_ptr<VtuOutput>                   vtu;
     std::unique_ptr<Tables>                      tables;
     Checkpoints                                  checkpoints;
+    Diagnosis                                    diagnosis;
   };
 
   /// "(x y z)", for messages.

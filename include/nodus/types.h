@@ -53,7 +53,33 @@ namespace Nodus
   class SolverFailure : public std::runtime_error
   {
   public:
-    using std::runtime_error::runtime_error;
+    enum class Kind
+    {
+      unspecified,
+      newton_limit,    ///< not converged in the iterations that Newton may take
+      newton_stalled,  ///< a merged iteration without progress
+      not_finite,      ///< residual, matrix or solution
+      inverted_cell,   ///< det F <= 0
+      free_body,       ///< singular system: nothing resists a displacement
+      over_constraint, ///< singular system: a constraint repeats another one
+      linear_solver,   ///< the solution of a linear system did not succeed
+      status_cycle,
+      geometry_cycle,
+      loop_limit ///< not converged in the passes that a loop may take
+    };
+
+    explicit SolverFailure(const std::string &message, const Kind kind = Kind::unspecified)
+        : std::runtime_error(message)
+        , kind_(kind)
+    {
+    }
+    Kind kind() const
+    {
+      return kind_;
+    }
+
+  private:
+    Kind kind_;
   };
 } // namespace Nodus
 

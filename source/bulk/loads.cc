@@ -251,6 +251,28 @@ namespace Nodus
       }
   }
 
+  double Loads::spring_energy(const unsigned int number, const std::vector<double> &u) const
+  {
+    const Implementation &l      = *implementation_;
+    double                energy = 0.;
+    for (const LoadedFace &loaded : l.loaded_cells[l.load_of[number]].faces)
+    {
+      if (loaded.load->parameters->type != Type::spring)
+        continue;
+      const FaceTable &table      = l.faces[loaded.face];
+      const auto      &components = loaded.load->parameters->components;
+      for (unsigned int q = 0; q < loaded.points.size(); ++q)
+        for (unsigned int c = 0; c < components.size(); ++c)
+        {
+          double u_q = 0.;
+          for (unsigned int a = 0; a < table.nodes.size(); ++a)
+            u_q += table.value[q][a] * u[l.dof(table.nodes[a], components[c])];
+          energy += 0.5 * loaded.values[q * components.size() + c] * loaded.points[q].area * u_q * u_q;
+        }
+    }
+    return energy;
+  }
+
   Loads::Loads(const DoFHandler<dim>                        &dof_handler,
                const Mapping<dim>                           &mapping,
                const std::vector<std::unique_ptr<Material>> &materials,

@@ -90,6 +90,23 @@ namespace Nodus
     roll_back();
   }
 
+  double SolidAssembler::spring_energy(const Vector &u) const
+  {
+    Scratch            &s = *scratch_;
+    std::vector<double> nodal_u(s.dofs.size());
+    u.extract_subvector_to(s.dofs.begin(), s.dofs.end(), nodal_u.begin());
+    std::vector<double> cell_u(dim * s.n_nodes);
+    double              energy = 0.;
+    for (unsigned int c = 0; c < s.cells.size(); ++c)
+      if (s.cells[c].owned && s.loads.act_on(c))
+      {
+        for (unsigned int i = 0; i < dim * s.n_nodes; ++i)
+          cell_u[i] = nodal_u[dim * s.cell_nodes[c * s.n_nodes + i / dim] + i % dim];
+        energy += s.loads.spring_energy(c, cell_u);
+      }
+    return energy;
+  }
+
   void SolidAssembler::visit(const Vector                                                      &u,
                              const std::function<void(const DoFHandler<dim>::active_cell_iterator &cell,
                                                       const std::vector<PointResult> &points)> &visitor) const

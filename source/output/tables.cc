@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <cmath>
 #include <sstream>
 
 namespace Nodus
@@ -23,6 +24,13 @@ namespace Nodus
                                     "longest status cycle,fallbacks\n";
 
     constexpr auto reaction_header = "increment,time,condition,force x [force],force y [force],force z [force]\n";
+
+    constexpr auto energy_header = "increment,time,external work [energy],released work [energy],contact work [energy],"
+                                   "stored energy [energy],frictional dissipation [energy],"
+                                   "plastic dissipation [energy],imbalance [energy]\n";
+
+    /// Imbalances below this part of the energies are round-off.
+    constexpr double round_off = 1e-13;
 
     constexpr auto iteration_header = "increment,time,attempt,geometry pass,threshold pass,status pass,iteration,"
                                       "force residual,contact residual,Krylov iterations,statuses changed\n";
@@ -53,7 +61,7 @@ namespace Nodus
   Tables::Tables(const std::string &folder, MPI_Comm communicator)
       : folder_(folder)
       , communicator_(communicator)
-      , rows_{contact_header, reaction_header, iteration_header}
+      , rows_{contact_header, reaction_header, energy_header, iteration_header}
   {
     make_results_folder(folder, communicator);
   }
@@ -62,6 +70,7 @@ namespace Nodus
                    const double                          t,
                    const std::vector<ContactResultants> &contact,
                    const std::vector<Reaction>          &reactions,
+                   const Energies                       &energies,
                    const IterationCounts                &counts)
   {
     auto contact_rows = row();
@@ -88,6 +97,13 @@ namespace Nodus
       reaction_rows << '\n';
     }
     rows_.reactions += reaction_rows.str();
+
+    auto         energy_row = row();
+    const double imbalance  = energies.imbalance();
+    energy_row << increment << ',' << t << ',' << energies.external << ',' << energies.released << ','
+               << energies.contact << ',' << energies.stored << ',' << energies.friction << ',' << energies.plastic
+               << ',' << (std::abs(imbalance) > round_off * energies.throughput() ? imbalance : 0.) << '\n';
+    rows_.energies += energy_row.str();
     finish_iterations();
     write();
   }
@@ -102,6 +118,7 @@ namespace Nodus
   {
     for (const auto &[name, rows] : {std::pair<const char *, const std::string *>{"contact.csv", &rows_.contact},
                                      {"reactions.csv", &rows_.reactions},
+                                     {"energy.csv", &rows_.energies},
                                      {"convergence.csv", &rows_.iterations}})
       write(name, *rows);
   }

@@ -12,6 +12,7 @@
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/trilinos_vector.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -202,8 +203,17 @@ namespace Nodus
     Series written = {};
 
     std::vector<Vector> nodal_values(const Vector &u) const;
-    void                add_bodies(const Vector &u, Output<dim> &output) const;
-    void                add_contact(const std::vector<ContactFields> &contact, Output<dim - 1> &output) const;
+    template <typename Function>
+    void        for_nodes(const Vector &u, Output<dim> &output, const Function &f) const;
+    void        add_bodies(const Vector &u, Output<dim> &output) const;
+    void        add_contact(const std::vector<ContactFields> &contact, Output<dim - 1> &output) const;
+    void        add_state(const Vector                  &u,
+                          const std::vector<NodalField> &fields,
+                          const std::vector<float>      &det_F,
+                          Output<dim>                   &output) const;
+    std::string main_file(const std::string &stem) const;
+    template <int patch_dim>
+    void write_pieces(const std::string &stem, const Output<patch_dim> &output) const;
     template <int patch_dim>
     void        write(const std::string &series, unsigned int increment, double t, const Output<patch_dim> &output);
     std::string write_record(const std::string &series) const;
@@ -277,10 +287,11 @@ namespace Nodus
     return ghosted;
   }
 
-  void VtuOutput::Implementation::add_bodies(const Vector &u, Output<dim> &output) const
+  /// Calls f(cell, patch, node, j, dofs of the node) for the nodes of the owned cells, in the order of the patch, and
+  /// adds their positions at displacement @p u.
+  template <typename Function>
+  void VtuOutput::Implementation::for_nodes(const Vector &u, Output<dim> &output, const Function &f) const
   {
-    const auto values = nodal_values(u);
-
     const auto        &fe      = dof_handler.get_fe();
     const auto         to_node = FETools::lexicographic_to_hierarchic_numbering<dim>(degree);
     const unsigned int n_nodes = to_node.size();
@@ -298,22 +309,52 @@ namespace Nodus
         auto &patch = output.add_patch(degree);
         for (unsigned int j = 0; j < n_nodes; ++j)
         {
-          Tensor<1, dim>          u_j;
-          SymmetricTensor<2, dim> sigma;
+          std::array<types::global_dof_index, dim> node_dofs;
+          Tensor<1, dim>                           u_j;
           for (unsigned int c = 0; c < dim; ++c)
           {
-            const auto dof = dofs[fe.component_to_system_index(c, to_node[j])];
-            u_j[c]         = u(dof);
-            for (unsigned int part = 0; part < 2; ++part)
-              sigma[stress_row[part][c]][stress_column[part][c]] = values[part](dof);
+            node_dofs[c] = dofs[fe.component_to_system_index(c, to_node[j])];
+            u_j[c]       = u(node_dofs[c]);
           }
           Column column(patch.data, j);
-          column << u_j << sigma << von_mises(sigma) << cell->material_id() + 1.;
-          if (values.size() > 2)
-            column << values[2](dofs[fe.component_to_system_index(0, to_node[j])]);
+          column << u_j;
+          f(cell, node_dofs, column);
           column << nodes.quadrature_point(j) + u_j;
         }
       }
+  }
+
+  void VtuOutput::Implementation::add_bodies(const Vector &u, Output<dim> &output) const
+  {
+    const auto values = nodal_values(u);
+    for_nodes(u,
+              output,
+              [&](const auto &cell, const auto &dofs, Column &column)
+              {
+                SymmetricTensor<2, dim> sigma;
+                for (unsigned int c = 0; c < dim; ++c)
+                  for (unsigned int part = 0; part < 2; ++part)
+                    sigma[stress_row[part][c]][stress_column[part][c]] = values[part](dofs[c]);
+                column << sigma << von_mises(sigma) << cell->material_id() + 1.;
+                if (values.size() > 2)
+                  column << values[2](dofs[0]);
+              });
+  }
+
+  void VtuOutput::Implementation::add_state(const Vector                  &u,
+                                            const std::vector<NodalField> &fields,
+                                            const std::vector<float>      &det_F,
+                                            Output<dim>                   &output) const
+  {
+    for_nodes(u,
+              output,
+              [&](const auto &cell, const auto &dofs, Column &column)
+              {
+                column << cell->material_id() + 1. << det_F[cell->active_cell_index()];
+                for (const NodalField &field : fields)
+                  for (const auto dof : dofs)
+                    column << field.values(dof);
+              });
   }
 
   void VtuOutput::Implementation::add_contact(const std::vector<ContactFields> &contact, Output<dim - 1> &output) const
@@ -335,35 +376,44 @@ namespace Nodus
       }
   }
 
+  std::string VtuOutput::Implementation::main_file(const std::string &stem) const
+  {
+    return stem + (n_ranks == 1 ? ".vtu" : ".pvtu");
+  }
+
   /// One piece per rank (deal.II 9.4 distorts second-order cells when pieces share a file), then the record of the
-  /// pieces, then the time series: whoever finds a file finds everything that it refers to.
+  /// pieces.
+  template <int patch_dim>
+  void VtuOutput::Implementation::write_pieces(const std::string &stem, const Output<patch_dim> &output) const
+  {
+    const auto piece = [&](const unsigned int r)
+    { return stem + (n_ranks == 1 ? "" : '.' + Utilities::int_to_string(r, 4)) + ".vtu"; };
+
+    throw_on_every_rank(write_complete(folder, piece(rank), [&](std::ostream &out) { output.write_vtu(out); }),
+                        communicator);
+    if (n_ranks == 1)
+      return;
+    std::vector<std::string> pieces(n_ranks);
+    for (unsigned int r = 0; r < n_ranks; ++r)
+      pieces[r] = piece(r);
+    throw_on_every_rank(rank > 0 ? ""
+                                 : write_complete(folder,
+                                                  main_file(stem),
+                                                  [&](std::ostream &out) { output.write_pvtu_record(out, pieces); }),
+                        communicator);
+  }
+
+  /// The pieces before the time series: whoever finds a file finds everything that it refers to.
   template <int patch_dim>
   void VtuOutput::Implementation::write(const std::string       &series,
                                         const unsigned int       increment,
                                         const double             t,
                                         const Output<patch_dim> &output)
   {
-    const std::string stem  = series + '_' + Utilities::int_to_string(increment, 4);
-    const auto        piece = [&](const unsigned int r)
-    { return stem + (n_ranks == 1 ? "" : '.' + Utilities::int_to_string(r, 4)) + ".vtu"; };
-
-    throw_on_every_rank(write_complete(folder, piece(rank), [&](std::ostream &out) { output.write_vtu(out); }),
-                        communicator);
-
-    auto &files = written[series];
-    files.emplace_back(t, stem + (n_ranks == 1 ? ".vtu" : ".pvtu"));
-    std::string problem;
-    if (rank == 0 && n_ranks > 1)
-    {
-      std::vector<std::string> pieces(n_ranks);
-      for (unsigned int r = 0; r < n_ranks; ++r)
-        pieces[r] = piece(r);
-      problem = write_complete(
-          folder, files.back().second, [&](std::ostream &out) { output.write_pvtu_record(out, pieces); });
-    }
-    if (rank == 0 && problem.empty())
-      problem = write_record(series);
-    throw_on_every_rank(problem, communicator);
+    const std::string stem = series + '_' + Utilities::int_to_string(increment, 4);
+    write_pieces(stem, output);
+    written[series].emplace_back(t, main_file(stem));
+    throw_on_every_rank(rank == 0 ? write_record(series) : "", communicator);
   }
 
   /// @returns what went wrong.
@@ -416,5 +466,25 @@ namespace Nodus
       implementation_->add_contact(contact, contact_output);
       implementation_->write("contact", increment, t, contact_output);
     }
+  }
+
+  void VtuOutput::write_state(const std::string             &name,
+                              const double                   t,
+                              const Vector                  &u,
+                              const std::vector<NodalField> &fields,
+                              const std::vector<float>      &det_F)
+  {
+    std::vector<Field> columns = {{"displacement", dim}, {"body", 1}, {"det_F", 1}};
+    for (const NodalField &field : fields)
+      for (const std::string &column : field.names)
+        columns.push_back({column, field.names.size() == 1 ? dim : 1});
+    Output<dim> output(columns, implementation_->degree, t);
+    implementation_->add_state(u, fields, det_F, output);
+    implementation_->write_pieces(name, output);
+  }
+
+  std::string VtuOutput::state_file(const std::string &name) const
+  {
+    return implementation_->main_file(name);
   }
 } // namespace Nodus

@@ -26,7 +26,7 @@ namespace Nodus
     r.reinit(b);
     const double norm_b = b.l2_norm();
     if (!std::isfinite(norm_b))
-      throw SolverFailure("Block solver: the right-hand side holds a value that is not finite.");
+      throw SolverFailure("Block solver: the right-hand side holds a value that is not finite.", SolverFailure::Kind::not_finite);
 
     Report report;
     if (norm_b > 0.)
@@ -45,7 +45,7 @@ namespace Nodus
         message << "Block solver: relative residual " << krylov.residual << " after " << krylov.iterations
                 << " iterations (wanted: " << tolerance
                 << "); use 'Type = direct' or change 'Augmentation factor' (good values lie between 1 and 10).";
-        throw SolverFailure(message.str());
+        throw SolverFailure(message.str(), SolverFailure::Kind::linear_solver);
       }
       matrix.vmult(r, x);
       r.sadd(-1., 1., b);

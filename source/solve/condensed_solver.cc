@@ -48,7 +48,7 @@ namespace Nodus
       std::ostringstream message;
       message << "Condensed solver: relative residual " << residual << " after " << iterations
               << " iterations (wanted: " << tolerance << "); use 'Type = direct'.";
-      throw SolverFailure(message.str());
+      throw SolverFailure(message.str(), SolverFailure::Kind::linear_solver);
     }
   } // namespace
 
@@ -165,7 +165,7 @@ namespace Nodus
     r.reinit(b);
     const double norm_b = b.l2_norm();
     if (!std::isfinite(norm_b))
-      throw SolverFailure("Condensed solver: the right-hand side holds a value that is not finite.");
+      throw SolverFailure("Condensed solver: the right-hand side holds a value that is not finite.", SolverFailure::Kind::not_finite);
 
     Report report;
     if (norm_b > 0.)

@@ -191,7 +191,8 @@ namespace Nodus
       value_.resize(n_entries);
     }
     if (dealii::Utilities::MPI::max(finite ? 0 : 1, communicator_) != 0)
-      throw SolverFailure("Direct solver: the matrix holds a value that is not finite.");
+      throw SolverFailure("Direct solver: the matrix holds a value that is not finite.",
+                          SolverFailure::Kind::not_finite);
     return dealii::Utilities::MPI::max(changed ? 1 : 0, communicator_) != 0;
   }
 
@@ -229,7 +230,7 @@ namespace Nodus
       const std::string message =
           "Direct solver: MUMPS error " + std::to_string(infog(mumps, 1)) + ": " + meaning(mumps) + ".";
       instance_.reset(); // gives the memory back; the next system starts afresh
-      throw SolverFailure(message);
+      throw SolverFailure(message, SolverFailure::Kind::linear_solver);
     }
   }
 
@@ -244,7 +245,7 @@ namespace Nodus
       const std::string message = "Direct solver: MUMPS error " + std::to_string(infog(mumps, 1)) +
                                   " in the substitution: " + meaning(mumps) + ".";
       instance_.reset();
-      throw SolverFailure(message);
+      throw SolverFailure(message, SolverFailure::Kind::linear_solver);
     }
     MPI_Bcast(x.data(), size_, MPI_DOUBLE, 0, communicator_);
   }
@@ -269,7 +270,8 @@ namespace Nodus
   {
     const BlockLayout &layout = *system.layout;
     if (layout.size() >= static_cast<DoFIndex>(std::numeric_limits<int>::max()))
-      throw SolverFailure("Direct solver: too many unknowns for MUMPS, use 'Type = block'.");
+      throw SolverFailure("Direct solver: too many unknowns for MUMPS, use 'Type = block'.",
+                          SolverFailure::Kind::linear_solver);
     const bool same_size = size_ == static_cast<int>(layout.size());
     size_                = layout.size();
 
@@ -292,7 +294,8 @@ namespace Nodus
     dealii::Utilities::MPI::sum(b, communicator_, b);
     const double norm_b = norm(b);
     if (!std::isfinite(norm_b))
-      throw SolverFailure("Direct solver: the right-hand side holds a value that is not finite.");
+      throw SolverFailure("Direct solver: the right-hand side holds a value that is not finite.",
+                          SolverFailure::Kind::not_finite);
 
     std::vector<double> x = b;
     apply_inverse(x);
@@ -312,7 +315,8 @@ namespace Nodus
       r.swap(refined_residual);
     }
     if (!std::isfinite(norm(r)))
-      throw SolverFailure("Direct solver: the solution is not finite, the matrix is numerically singular.");
+      throw SolverFailure("Direct solver: the solution is not finite, the matrix is numerically singular.",
+                          SolverFailure::Kind::linear_solver);
 
     layout.reinit(solution);
     for (unsigned int block = 0; block < 3; ++block)

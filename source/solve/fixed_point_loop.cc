@@ -22,7 +22,7 @@ namespace Nodus
       std::ostringstream message;
       message << "the " << name_ << " loop did not converge in " << limit_ << " passes: criterion " << value
               << ", tolerance " << tolerance_ << (locus.empty() ? "" : "; worst at " + locus);
-      throw SolverFailure(message.str());
+      throw SolverFailure(message.str(), SolverFailure::Kind::loop_limit);
     }
     return false;
   }

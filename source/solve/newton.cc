@@ -25,12 +25,12 @@ namespace Nodus
       return std::min(largest, std::max(term, 0.1 / residual));
     }
 
-    [[noreturn]] void fail(const std::string &reason, const NewtonProblem::Norms &norms)
+    [[noreturn]] void fail(const std::string &reason, const NewtonProblem::Norms &norms, const SolverFailure::Kind kind)
     {
       std::ostringstream message;
       message << "Newton " << reason << ": relative force residual " << norms.force << ", contact residual "
               << norms.contact;
-      throw SolverFailure(message.str());
+      throw SolverFailure(message.str(), kind);
     }
   } // namespace
 
@@ -62,16 +62,20 @@ namespace Nodus
     while (!converged(norms))
     {
       if (!std::isfinite(norms.force + norms.contact))
-        fail("met numbers that are not finite", norms);
+        fail("met numbers that are not finite", norms, SolverFailure::Kind::not_finite);
       if (report.iterations == parameters_.maximum_iterations)
-        fail("did not converge in " + std::to_string(report.iterations) + " iterations", norms);
+        fail("did not converge in " + std::to_string(report.iterations) + " iterations",
+             norms,
+             SolverFailure::Kind::newton_limit);
 
       const double now = residual(norms);
       idle             = now < best || norms.changes < fewest ? 0 : idle + 1;
       best             = std::min(best, now);
       fewest           = std::min(fewest, norms.changes);
       if (patience_ > 0 && idle >= patience_)
-        fail("stalled: no progress in " + std::to_string(idle) + " iterations", norms);
+        fail("stalled: no progress in " + std::to_string(idle) + " iterations",
+             norms,
+             SolverFailure::Kind::newton_stalled);
 
       if (report.iterations > 0)
         forcing = forcing_term(now, before, forcing, parameters_.largest_forcing_term);

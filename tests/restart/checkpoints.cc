@@ -128,7 +128,7 @@ int main(int argc, char **argv)
       left.push_back(entry.path().filename());
     std::sort(left.begin(), left.end());
     check("  leaves complete files",
-          left == std::vector<std::string>({"contact.csv", "convergence.csv", "reactions.csv"}));
+          left == std::vector<std::string>({"contact.csv", "convergence.csv", "energy.csv", "reactions.csv"}));
   }
 
   put(kept, checkpoints);

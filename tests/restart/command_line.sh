@@ -36,7 +36,7 @@ wait $process
 grep -q "^nodus: ended by SIGTERM in increment .*; --restart continues from t = " parts.message || fail "$(cat parts.message)"
 run parts --restart > restart.log || fail "restart"
 grep -q "^Continues after increment " restart.log || fail "it began anew"
-for table in contact.csv reactions.csv; do
+for table in contact.csv reactions.csv energy.csv; do
   cmp whole/$table parts/$table || fail "$table differs"
 done
 diff <(grep DataSet whole/bodies.pvd) <(grep DataSet parts/bodies.pvd) || fail "bodies.pvd differs"

@@ -61,11 +61,11 @@ def table(folder, name):
 
 
 def difference(a, b, name):
-    """Largest difference of the forces, moments and areas in the table, relative to the largest value of its column."""
+    """Largest difference of the forces, moments, areas and energies, relative to the largest value of its column."""
     first, second = table(a, name), table(b, name)
     if len(first) != len(second):
         return f"{len(first)} and {len(second)} rows"
-    columns = [i for i, title in enumerate(first[0]) if "force" in title or "area" in title or "pressure" in title]
+    columns = [i for i, title in enumerate(first[0]) if any(kind in title for kind in ("force", "area", "pressure", "[energy]"))]
     largest = 0.0
     for i in columns:
         scale = max(abs(float(row[i])) for row in second[1:])
@@ -118,7 +118,7 @@ def main():
     left = [os.path.join(place, name) for place, folders, files in os.walk(parts) for name in folders + files
             if name.endswith(".incomplete")]
     print(f"\nlast run: exit code {run.returncode}; left incomplete: {', '.join(left) or 'none'}")
-    for name in ("contact.csv", "reactions.csv"):
+    for name in ("contact.csv", "reactions.csv", "energy.csv"):
         print(f"{name}: largest relative difference to the run left alone: {difference(parts, whole, name)}, "
               f"{'the same text' if table(parts, name) == table(whole, name) else 'not the same text'}")
     if bad or left or run.returncode != 0:

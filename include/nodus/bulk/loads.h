@@ -44,6 +44,9 @@ namespace Nodus
     /// Adds the loads of a cell that they act on, at the time of evaluate().
     void add(unsigned int number, const Cell &cell) const;
 
+    /// Energy stored in the springs of a cell that loads act on, at the displacement @p u of its nodes.
+    double spring_energy(unsigned int number, const std::vector<double> &u) const;
+
   private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;

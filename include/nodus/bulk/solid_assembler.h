@@ -76,6 +76,8 @@ namespace Nodus
     void visit(const Vector                                                      &u,
                const std::function<void(const dealii::DoFHandler<dim>::active_cell_iterator &cell,
                                         const std::vector<PointResult>                      &points)> &visitor) const;
+    /// Energy in the springs of this rank's cells at displacement @p u (with ghosts) and the time of the last forces.
+    double spring_energy(const Vector &u) const;
     /// Whether some law has a plastic strain.
     bool has_history() const;
 

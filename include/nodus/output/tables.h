@@ -2,6 +2,7 @@
 #define nodus_output_tables_h
 
 #include <nodus/output/contact_fields.h>
+#include <nodus/output/energies.h>
 #include <nodus/solve/newton.h>
 #include <nodus/types.h>
 
@@ -12,9 +13,9 @@
 
 namespace Nodus
 {
-  /// contact.csv (one row per increment and pair), reactions.csv (one row per increment and displacement condition) and
-  /// convergence.csv (one row per Newton iteration), rewritten as a whole after each increment (temporary name, then
-  /// rename) by rank 0.
+  /// contact.csv (one row per increment and pair), reactions.csv (one row per increment and displacement condition),
+  /// energy.csv (one row per increment) and convergence.csv (one row per Newton iteration), rewritten as a whole after
+  /// each increment (temporary name, then rename) by rank 0.
   class Tables
   {
   public:
@@ -32,6 +33,7 @@ namespace Nodus
              double                                t,
              const std::vector<ContactResultants> &contact,
              const std::vector<Reaction>          &reactions,
+             const Energies                       &energies,
              const IterationCounts                &counts);
 
     /// One iterate of Newton's method, kept until the next add() or add_failure().
@@ -53,7 +55,7 @@ namespace Nodus
 
     struct Rows
     {
-      std::string contact, reactions, iterations; ///< with the headers
+      std::string contact, reactions, energies, iterations; ///< with the headers
     };
     const Rows &rows() const
     {

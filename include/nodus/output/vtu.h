@@ -8,6 +8,7 @@
 
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/mapping.h>
+#include <deal.II/lac/trilinos_vector.h>
 
 #include <map>
 #include <memory>
@@ -32,6 +33,22 @@ namespace Nodus
 
     /// @p u has ghost entries. Collective. @throws InputError when the folder cannot be written.
     void write(unsigned int increment, double t, const Vector &u, const std::vector<ContactFields> &contact);
+
+    /// Values at the displacement nodes: a vector, or three scalars in the places of its components.
+    struct NodalField
+    {
+      std::vector<std::string> names;  ///< one, or three
+      Vector                   values; ///< with ghost entries
+    };
+    /// Writes the bodies at displacement @p u, in equilibrium or not, as <name>.vtu, or as <name>.pvtu and its pieces,
+    /// out of the series. @p det_F: the smallest of each active cell. Collective. @throws InputError as write().
+    void write_state(const std::string             &name,
+                     double                         t,
+                     const Vector                  &u,
+                     const std::vector<NodalField> &fields,
+                     const std::vector<float>      &det_F);
+    /// The file to open then.
+    std::string state_file(const std::string &name) const;
 
     /// (time, file) of what was written so far, by the name of the series.
     using Series = std::map<std::string, std::vector<std::pair<double, std::string>>>;

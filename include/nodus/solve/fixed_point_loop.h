@@ -17,6 +17,14 @@ namespace Nodus
     /// @throws SolverFailure when the maximum number of passes is used up.
     bool finished(double value, const std::string &locus);
 
+    const std::string &name() const
+    {
+      return name_;
+    }
+    double tolerance() const
+    {
+      return tolerance_;
+    }
     /// Passes done so far.
     unsigned int counter() const
     {

@@ -1,0 +1,576 @@
+#include <nodus/output/diagnosis.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+// From numbers to causes: one function for each cause.
+
+namespace Nodus
+{
+  namespace
+  {
+    using Kind    = SolverFailure::Kind;
+    using Mode    = LoopParameters::Mode;
+    using History = Diagnosis::History;
+    using Causes  = std::vector<SuspectedCause>;
+
+    /// A slave node that moves by more than this part of a face in an increment meets other faces in each iteration.
+    constexpr double large_step = 0.5;
+    /// Residuals that fall by this factor or less from one iteration or pass to the next do not converge.
+    constexpr double no_contraction = 0.9;
+    /// Relative force residuals below this that do not fall any more are round-off of a badly conditioned system.
+    constexpr double noise_floor = 1e-6;
+    /// More passes or iterations than this are not worth while.
+    constexpr unsigned int most_passes = 200;
+
+    template <typename... Parts>
+    std::string text(const Parts &...parts)
+    {
+      std::ostringstream stream;
+      stream << std::setprecision(4);
+      (stream << ... << parts);
+      return stream.str();
+    }
+
+    std::string joined(const std::vector<double> &values)
+    {
+      std::string list;
+      for (const double value : values)
+        list += (list.empty() ? "" : ", ") + text(value);
+      return list;
+    }
+
+    std::string in_pair(const unsigned int pair, const std::string &key)
+    {
+      return "Contact pair " + std::to_string(pair + 1) + '/' + key;
+    }
+
+    std::string pair_name(const Parameters &parameters, const unsigned int pair)
+    {
+      return text("contact pair ", pair + 1, " (", parameters.contact_pairs[pair].name, ')');
+    }
+
+    std::string body_name(const Parameters &parameters, const unsigned int body)
+    {
+      const std::string &name = parameters.bodies[body].name;
+      return text("body ", body + 1, name.empty() ? "" : " (" + name + ')');
+    }
+
+    /// Geometric mean of the ratios of the last few values; 1 for fewer than two.
+    double contraction(const std::vector<double> &values)
+    {
+      const std::size_t n = std::min<std::size_t>(values.size(), 5);
+      if (n < 2 || values.back() <= 0. || values[values.size() - n] <= 0.)
+        return 1.;
+      return std::pow(values.back() / values[values.size() - n], 1. / (n - 1));
+    }
+
+    std::vector<double> last_of(const std::vector<double> &values, const std::size_t n)
+    {
+      return {values.end() - std::min(n, values.size()), values.end()};
+    }
+
+    std::string as_list(const std::vector<unsigned int> &values)
+    {
+      std::string list;
+      for (const unsigned int value : values)
+        list += (list.empty() ? "" : ", ") + std::to_string(value);
+      return list;
+    }
+
+    /// Smaller increments, in the terms of the user.
+    void add_smaller_increments(const Parameters &parameters, const History &history, SuspectedCause &cause)
+    {
+      const LoadSteppingParameters &load = parameters.load_stepping;
+      if (!load.cut_back)
+        cause.changes.push_back(
+            {"Load stepping/Cut back", "false", "true", "an increment that fails is tried again in halves"});
+      else
+        cause.changes.push_back({"Load stepping/Minimum increment",
+                                 load.minimum_increment > 0. ? text(load.minimum_increment) : "0 (automatic)",
+                                 text((history.end - history.begin) / 16.),
+                                 text("increments may become smaller than ", history.end - history.begin)});
+      const auto end      = std::find_if(load.interval_ends.begin(),
+                                    load.interval_ends.end(),
+                                    [&](const double t) { return history.end <= t * (1. + 1e-12); });
+      const auto interval = std::min<std::size_t>(end - load.interval_ends.begin(), load.increments.size() - 1);
+      auto       more     = load.increments;
+      more[interval] *= 4;
+      cause.changes.push_back(
+          {"Load stepping/Increments", as_list(load.increments), as_list(more), "smaller increments from the start"});
+    }
+
+    void add_line_search(const Parameters &parameters, SuspectedCause &cause)
+    {
+      if (!parameters.newton.line_search)
+        cause.changes.push_back(
+            {"Newton/Line search", "false", "true", "corrections that increase the residual are shortened"});
+    }
+
+    void add_newton_mode(const std::string &loop, const LoopParameters &parameters, SuspectedCause &cause)
+    {
+      if (parameters.mode == Mode::fixed_point)
+        cause.changes.push_back(
+            {loop + "/Mode", "fixed point", "newton", "the derivative takes the place of the fixed point iteration"});
+    }
+
+    void add_more_passes(const std::string &key,
+                         const unsigned int now,
+                         const double       rate,
+                         const double       residual,
+                         const double       tolerance,
+                         SuspectedCause    &cause)
+    {
+      if (!(rate < no_contraction && residual > tolerance))
+        return;
+      const double more = std::ceil(std::log(tolerance / residual) / std::log(rate));
+      if (now + more <= most_passes)
+        cause.changes.push_back({key,
+                                 text(now),
+                                 text(now + std::max(5., more + 2.)),
+                                 text("at a factor of ", rate, " each, ", more, " more are needed")});
+    }
+
+    void
+    add_free_body(const Parameters &parameters, const History &history, const FailureEvidence &evidence, Causes &causes)
+    {
+      SuspectedCause cause{"a body can move freely", {}, {}};
+      if (evidence.kind == Kind::free_body)
+        cause.evidence.push_back("the linear solver met a null pivot of a displacement");
+      for (const std::string &motion : evidence.free_motions)
+        cause.evidence.push_back("no prescribed displacement, spring or closed contact resists this: " + motion);
+      for (unsigned int p = 0; p < evidence.pairs.size(); ++p)
+      {
+        const auto &pair = evidence.pairs[p];
+        cause.evidence.push_back(text(pair_name(parameters, p),
+                                      ": ",
+                                      pair.closed,
+                                      " of ",
+                                      pair.sites,
+                                      " sites are closed, ",
+                                      pair.slipping,
+                                      " of these slip or have no friction"));
+      }
+      cause.changes.push_back({text("Boundary condition ", parameters.boundary_conditions.size() + 1),
+                               "does not exist",
+                               "Type = displacement or spring",
+                               "a soft spring, or a held component, against the motion above"});
+      for (unsigned int p = 0; p < evidence.pairs.size(); ++p)
+      {
+        const auto &pair = parameters.contact_pairs[p];
+        if (evidence.pairs[p].closed == 0 && history.increment == 1 &&
+            pair.initial_status != ContactPairParameters::InitialStatus::closed)
+          cause.changes.push_back(
+              {in_pair(p, "Initial status"),
+               pair.initial_status == ContactPairParameters::InitialStatus::open ? "open" : "by gap",
+               "closed",
+               "the contact holds the body from the start"});
+        if (evidence.pairs[p].closed > 0 && pair.friction_law == ContactPairParameters::FrictionLaw::coulomb &&
+            pair.friction_coefficient == 0.)
+          cause.changes.push_back(
+              {in_pair(p, "Friction coefficient"), "0", "0.1", "friction holds what the normals leave free"});
+      }
+      causes.push_back(cause);
+    }
+
+    void add_over_constraint(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes)
+    {
+      const auto    &constraint = evidence.constraint;
+      SuspectedCause cause{"a contact constraint repeats another constraint", {}, {}};
+      if (constraint.pair < parameters.contact_pairs.size())
+      {
+        std::string held;
+        for (unsigned int c = 0; c < dim; ++c)
+          if (constraint.prescribed[c])
+            held += (held.empty() ? "" : ", ") + std::string(1, "xyz"[c]);
+        cause.evidence.push_back(text("null pivot of the ",
+                                      constraint.friction ? "friction" : "contact",
+                                      " multiplier of the slave node at (",
+                                      constraint.X,
+                                      ") of ",
+                                      pair_name(parameters, constraint.pair),
+                                      ", normal (",
+                                      constraint.normal,
+                                      ')'));
+        cause.evidence.push_back("components of its displacement that are prescribed: " +
+                                 (held.empty() ? "none" : held));
+        const auto &pair = parameters.contact_pairs[constraint.pair];
+        for (unsigned int q = 0; q < parameters.contact_pairs.size(); ++q)
+          if (const auto &other = parameters.contact_pairs[q];
+              q != constraint.pair && other.slave.body == pair.master.body && other.master.body == pair.slave.body)
+          {
+            cause.evidence.push_back(pair_name(parameters, q) + " has the same bodies with slave and master exchanged");
+            cause.changes.push_back({text("Contact pair ", q + 1), "exists", "nothing", "leave this pair out"});
+          }
+        const std::string hole = text("(x - ",
+                                      constraint.X[0],
+                                      ")^2 + (y - ",
+                                      constraint.X[1],
+                                      ")^2 + (z - ",
+                                      constraint.X[2],
+                                      ")^2 > ",
+                                      std::pow(evidence.pairs[constraint.pair].face_size, 2));
+        cause.changes.push_back({in_pair(constraint.pair, "Slave where"),
+                                 pair.slave.where.empty() ? "empty" : pair.slave.where,
+                                 hole,
+                                 "leaves the faces around this node out"});
+        cause.changes.push_back({in_pair(constraint.pair, "Slave body"),
+                                 text(pair.slave.body),
+                                 text(pair.master.body),
+                                 "slave and master change places (with their boundary ids)"});
+      }
+      causes.push_back(cause);
+    }
+
+    /// Statuses that come and go.
+    void add_status_cycle(const Parameters      &parameters,
+                          const History         &history,
+                          const FailureEvidence &evidence,
+                          Causes                &causes)
+    {
+      SuspectedCause cause{"statuses change back and forth", {}, {}};
+      const auto    &sites   = evidence.changing_sites;
+      unsigned int   changes = 0, iterations = 0, period = 0, friction = 0;
+      for (const auto &i : history.iterations)
+        if (i.norms.changes > 0)
+        {
+          changes += i.norms.changes;
+          ++iterations;
+        }
+      for (const auto &pass : history.passes)
+        if (pass.loop == "status" && pass.value > 0.)
+        {
+          changes += static_cast<unsigned int>(pass.value);
+          ++iterations;
+        }
+      for (const auto &site : sites)
+      {
+        period = std::max(period, site.ledger.period);
+        friction += site.ledger.last == Contradiction::over_cone || site.ledger.last == Contradiction::against_slip;
+      }
+      cause.evidence.push_back(text(changes,
+                                    " changes at ",
+                                    evidence.n_changed_sites,
+                                    " sites in ",
+                                    iterations,
+                                    " of the ",
+                                    history.iterations.size(),
+                                    " iterations and passes of the last attempt"));
+      if (period > 0)
+        cause.evidence.push_back(text("the same statuses came back after ", period, " tests"));
+      unsigned int pair = 0;
+      if (!sites.empty())
+      {
+        pair = sites.front().pair;
+        cause.evidence.push_back(text("most often, ",
+                                      sites.front().ledger.changes,
+                                      " times, at (",
+                                      sites.front().X,
+                                      ") of ",
+                                      pair_name(parameters, pair)));
+        cause.evidence.push_back(
+            friction * 2 > sites.size()
+                ? text(friction, " of the ", sites.size(), " worst went between stick and slip")
+                : text(sites.size() - friction, " of the ", sites.size(), " worst went between open and closed"));
+      }
+      add_smaller_increments(parameters, history, cause);
+      if (pair < parameters.contact_pairs.size())
+      {
+        const auto  &p      = parameters.contact_pairs[pair];
+        const bool   slides = friction * 2 > sites.size();
+        const double factor = slides ? p.tangential_augmentation_factor : p.normal_augmentation_factor;
+        cause.changes.push_back(
+            {in_pair(pair, slides ? "Tangential augmentation factor" : "Normal augmentation factor"),
+             text(factor),
+             text(factor / 10.),
+             "statuses are tested more softly; the solution does not depend on it"});
+      }
+      add_newton_mode("Status loop", parameters.status_loop, cause);
+      causes.push_back(cause);
+    }
+
+    std::vector<double> values_of(const History &history, const std::string &loop)
+    {
+      std::vector<double> values;
+      for (const auto &pass : history.passes)
+        if (pass.loop == loop)
+        {
+          if (pass.number == 1)
+            values.clear(); // the loop began anew
+          values.push_back(pass.value);
+        }
+      return values;
+    }
+
+    void add_threshold_loop(const Parameters &parameters, const History &history, Causes &causes)
+    {
+      const std::vector<double> values = values_of(history, "threshold");
+      const double              rate   = contraction(values);
+      const double              last   = values.empty() ? 0. : values.back();
+      SuspectedCause            cause{rate < no_contraction ? "the threshold loop converges slowly"
+                                                            : "the friction threshold loop does not contract",
+                           {},
+                           {}};
+      cause.evidence.push_back("changes of the threshold in the last passes: " + joined(last_of(values, 6)));
+      cause.evidence.push_back(text("each pass multiplies them by ", rate, " (below 1 it converges)"));
+      double friction = 0.;
+      for (const auto &pair : parameters.contact_pairs)
+        friction = std::max(friction, pair.friction_coefficient);
+      cause.evidence.push_back(text("largest friction coefficient ",
+                                    friction,
+                                    ": the loop contracts about like the coefficient over the slope along which the "
+                                    "load presses the bodies together"));
+      add_newton_mode("Threshold loop", parameters.threshold_loop, cause);
+      add_more_passes("Threshold loop/Maximum passes",
+                      parameters.threshold_loop.maximum_passes,
+                      rate,
+                      last,
+                      parameters.threshold_loop.tolerance,
+                      cause);
+      add_smaller_increments(parameters, history, cause);
+      causes.push_back(cause);
+    }
+
+    void add_geometry_loop(const Parameters      &parameters,
+                           const History         &history,
+                           const FailureEvidence &evidence,
+                           Causes                &causes)
+    {
+      const bool                cycle  = evidence.kind == Kind::geometry_cycle;
+      const std::vector<double> values = values_of(history, "geometry");
+      const double              rate   = contraction(values);
+      const double              last   = values.empty() ? 0. : values.back();
+      SuspectedCause cause{cycle ? "normals jump between the facets of the master: the geometry loop comes back to the "
+                                   "pass before the last one"
+                                 : "the geometry loop does not converge",
+                           {},
+                           {}};
+      cause.evidence.push_back("criterion in the last passes: " + joined(last_of(values, 6)) +
+                               text(" (it ends at ", parameters.geometry_loop.tolerance, ')'));
+      if (!cycle)
+        cause.evidence.push_back(text("each pass multiplies it by ", rate, " (below 1 it converges)"));
+      if (!history.passes.empty())
+        cause.evidence.push_back("worst at the surface node with the reference position " +
+                                 history.passes.back().worst);
+      for (unsigned int p = 0; p < evidence.pairs.size(); ++p)
+      {
+        const auto &pair = parameters.contact_pairs[p];
+        cause.evidence.push_back(text(pair_name(parameters, p),
+                                      ": surface ",
+                                      text_of(pair.surface),
+                                      ", slave nodes slide up to ",
+                                      evidence.pairs[p].sliding,
+                                      " faces in the increment"));
+        if (pair.normal == ContactPairParameters::Normal::master_facet)
+          cause.changes.push_back(
+              {in_pair(p, "Normal"), "master facet", "averaged", "normals do not jump across the edges"});
+        if (pair.surface == ContactPairParameters::Surface::faceted)
+          cause.changes.push_back({in_pair(p, "Surface"), "faceted", "smoothed", "there are no edges to cross"});
+      }
+      add_newton_mode("Geometry loop", parameters.geometry_loop, cause);
+      add_more_passes("Geometry loop/Maximum passes",
+                      parameters.geometry_loop.maximum_passes,
+                      rate,
+                      last,
+                      parameters.geometry_loop.tolerance,
+                      cause);
+      add_smaller_increments(parameters, history, cause);
+      causes.push_back(cause);
+    }
+
+    void
+    add_partners(const Parameters &parameters, const History &history, const FailureEvidence &evidence, Causes &causes)
+    {
+      for (unsigned int p = 0; p < evidence.pairs.size(); ++p)
+      {
+        const auto &pair = evidence.pairs[p];
+        if (pair.lost == 0 && (pair.unpaired < pair.sites || pair.sites == 0))
+          continue;
+        SuspectedCause cause{
+            pair.lost > 0 ? "slave nodes lost the master surface" : "the master is out of the search distance", {}, {}};
+        cause.evidence.push_back(text(pair_name(parameters, p),
+                                      ": ",
+                                      pair.unpaired,
+                                      " of ",
+                                      pair.sites,
+                                      " sites have no master point within ",
+                                      pair.reach));
+        if (pair.lost > 0)
+          cause.evidence.push_back(text(pair.lost,
+                                        " of them were closed when the increment began, the first at (",
+                                        pair.lost_X,
+                                        "): they slid off the master or went through it"));
+        const auto &keys = parameters.contact_pairs[p];
+        cause.changes.push_back({in_pair(p, "Search distance"),
+                                 keys.search_distance > 0. ? text(keys.search_distance) : "0 (automatic)",
+                                 text(4. * pair.reach),
+                                 "master points farther away are found"});
+        if (pair.lost > 0)
+          cause.changes.push_back({in_pair(p, "Projection tolerance"),
+                                   text(keys.projection_tolerance),
+                                   text(std::max(0.5, 2. * keys.projection_tolerance)),
+                                   "nodes may hang over the rim of the master that far (in faces)"});
+        add_smaller_increments(parameters, history, cause);
+        causes.push_back(cause);
+      }
+    }
+
+    void add_distorted_cells(const Parameters      &parameters,
+                             const History         &history,
+                             const FailureEvidence &evidence,
+                             Causes                &causes)
+    {
+      const auto    &cell = evidence.worst_cell;
+      SuspectedCause cause{
+          evidence.inverted_cells > 0 ? "cells are turned inside out" : "cells are strongly distorted", {}, {}};
+      cause.evidence.push_back(text(evidence.inverted_cells,
+                                    " cells with det F <= 0, ",
+                                    evidence.distorted_cells,
+                                    " with det F < ",
+                                    Diagnosis::distorted,
+                                    "; the smallest, ",
+                                    cell.det_F,
+                                    ", in the cell of ",
+                                    body_name(parameters, cell.body),
+                                    " centred at (",
+                                    cell.X,
+                                    "), now at (",
+                                    cell.x,
+                                    ')'));
+      double motion = 0.;
+      for (const auto &pair : evidence.pairs)
+        motion = std::max({motion, pair.sliding, pair.penetration});
+      if (!evidence.pairs.empty())
+        cause.evidence.push_back(text("the contact surfaces move against each other by up to ",
+                                      motion,
+                                      " faces in the increment",
+                                      motion > large_step ? ": the increment is too large" : ""));
+      add_smaller_increments(parameters, history, cause);
+      add_line_search(parameters, cause);
+      const auto &body = parameters.bodies[cell.body];
+      if (body.material.poissons_ratio > 0.49 &&
+          body.volumetric_treatment == BodyParameters::VolumetricTreatment::standard)
+        cause.changes.push_back({text("Body ", cell.body + 1, "/Volumetric treatment"),
+                                 "standard",
+                                 "mean dilatation",
+                                 text("Poisson's ratio ", body.material.poissons_ratio, " locks standard cells")});
+      cause.changes.push_back({text("Body ", cell.body + 1, "/Global refinement"),
+                               text(body.global_refinement),
+                               text(body.global_refinement + 1),
+                               "smaller cells, if it is the mesh that cannot follow (or mesh that place anew)"});
+      causes.push_back(cause);
+    }
+
+    void add_linear_solver(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes)
+    {
+      using Type            = LinearSolverParameters::Type;
+      const auto    &solver = parameters.linear_solver;
+      SuspectedCause cause{"the linear solver did not succeed", {evidence.message}, {}};
+      if (solver.type != Type::direct)
+      {
+        cause.changes.push_back({"Linear solver/Type",
+                                 text_of(solver.type),
+                                 "direct",
+                                 "tells a singular system (and where) from a slow iteration"});
+        cause.changes.push_back({"Linear solver/Maximum iterations",
+                                 text(solver.maximum_iterations),
+                                 text(4 * solver.maximum_iterations),
+                                 "if the residual was still falling"});
+      }
+      else
+        cause.changes.push_back({"Linear solver/Type", "direct", "condensed", "needs less memory"});
+      causes.push_back(cause);
+    }
+
+    void
+    add_newton(const Parameters &parameters, const History &history, const FailureEvidence &evidence, Causes &causes)
+    {
+      std::vector<double> force, residual;
+      for (const auto &i : history.iterations)
+      {
+        if (i.iteration == 0)
+        {
+          force.clear(); // another solution
+          residual.clear();
+        }
+        force.push_back(i.norms.force);
+        // until prescribed displacements are met, the force says nothing about progress
+        if (i.norms.prescribed <= parameters.newton.contact_tolerance)
+          residual.push_back(std::max(i.norms.force / parameters.newton.force_tolerance,
+                                      i.norms.contact / parameters.newton.contact_tolerance));
+      }
+      const double rate   = contraction(residual);
+      const bool   floor  = !force.empty() && force.back() < noise_floor && rate >= no_contraction;
+      double       motion = 0.;
+      for (const auto &pair : evidence.pairs)
+        motion = std::max({motion, pair.sliding, pair.penetration});
+
+      SuspectedCause cause{evidence.kind == Kind::not_finite ? "Newton's method met numbers that are not finite"
+                           : rate < no_contraction           ? "Newton's method converges, but not in time"
+                           : floor ? "Newton's method cannot meet its tolerance in these digits"
+                                   : "Newton's method diverges or wanders: the increment is too large for it",
+                           {},
+                           {}};
+      cause.evidence.push_back("relative force residual in the last iterations: " + joined(last_of(force, 6)));
+      cause.evidence.push_back(text("each iteration multiplies the residual by ", rate));
+      if (!evidence.pairs.empty())
+        cause.evidence.push_back(
+            text("the contact surfaces move against each other by up to ", motion, " faces in the increment"));
+      if (evidence.worst_cell.det_F < 1.)
+        cause.evidence.push_back(text("smallest det F ", evidence.worst_cell.det_F));
+      add_more_passes("Newton/Maximum iterations",
+                      parameters.newton.maximum_iterations,
+                      rate,
+                      residual.empty() ? 0. : residual.back(),
+                      1.,
+                      cause);
+      if (floor)
+        cause.changes.push_back({"Newton/Force tolerance",
+                                 text(parameters.newton.force_tolerance),
+                                 text(10. * force.back()),
+                                 "what the conditioning of this system allows"});
+      add_smaller_increments(parameters, history, cause);
+      add_line_search(parameters, cause);
+      causes.push_back(cause);
+    }
+  } // namespace
+
+  std::vector<SuspectedCause>
+  suspected_causes(const Parameters &parameters, const Diagnosis::History &history, const FailureEvidence &evidence)
+  {
+    Causes            causes;
+    const Kind        kind       = evidence.kind;
+    const std::string loop       = history.passes.empty() ? "" : history.passes.back().loop;
+    const bool        in_a_loop  = kind == Kind::loop_limit || kind == Kind::geometry_cycle;
+    const bool        statuses   = kind == Kind::status_cycle || (kind == Kind::loop_limit && loop == "status");
+    bool              chattering = false; // statuses still changed when it ended
+    for (std::size_t i = history.iterations.size() - std::min<std::size_t>(3, history.iterations.size());
+         i < history.iterations.size();
+         ++i)
+      chattering = chattering || history.iterations[i].norms.changes > 0;
+
+    // What the failure says itself, then what explains a failure of that kind, then the iteration as such.
+    if (kind == Kind::over_constraint)
+      add_over_constraint(parameters, evidence, causes);
+    if (kind == Kind::free_body || (!evidence.free_motions.empty() && !in_a_loop && !statuses))
+      add_free_body(parameters, history, evidence, causes);
+    if (statuses)
+      add_status_cycle(parameters, history, evidence, causes);
+    if (kind == Kind::loop_limit && loop == "threshold")
+      add_threshold_loop(parameters, history, causes);
+    if (kind == Kind::geometry_cycle || (kind == Kind::loop_limit && loop == "geometry"))
+      add_geometry_loop(parameters, history, evidence, causes);
+    if (kind == Kind::linear_solver)
+      add_linear_solver(parameters, evidence, causes);
+    add_partners(parameters, history, evidence, causes);
+    if (kind == Kind::inverted_cell || evidence.worst_cell.det_F < Diagnosis::distorted)
+      add_distorted_cells(parameters, history, evidence, causes);
+    if (!statuses && !in_a_loop && chattering)
+      add_status_cycle(parameters, history, evidence, causes);
+    if (kind == Kind::newton_limit || kind == Kind::newton_stalled || kind == Kind::not_finite || causes.empty())
+      add_newton(parameters, history, evidence, causes);
+    return causes;
+  }
+} // namespace Nodus

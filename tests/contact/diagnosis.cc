@@ -1,0 +1,191 @@
+// Runs that cannot succeed leave a page about why: the cause that was built in is suspected first, with its evidence,
+// and the keys that are to be changed exist.
+
+#include "../cases.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+using namespace Cases;
+
+namespace
+{
+  const std::string folder = "diagnosis_results";
+
+  std::string contents(const std::string &name)
+  {
+    std::ifstream file(std::filesystem::path(folder) / name);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  /// The page that a run leaves; empty when it succeeds.
+  std::string page(Parameters p)
+  {
+    p.output.results_folder = folder;
+    std::string message;
+    try
+    {
+      ContactProblem(p, world(), log()).run();
+    }
+    catch (const SolverFailure &failure)
+    {
+      message = failure.what();
+    }
+    MPI_Barrier(world());
+    const std::string text = contents("diagnosis.md");
+    if (!message.empty() && message.find("diagnosis.md") == std::string::npos)
+      return "the message does not name the page: " + message;
+    return message.empty() && text.empty() ? "" : text;
+  }
+
+  /// First words of the first cause and what else must be there.
+  void expect(const std::string              &what,
+              const std::string              &text,
+              const std::string              &cause,
+              const std::vector<std::string> &words)
+  {
+    std::string missing;
+    if (text.find("1. **" + cause) == std::string::npos)
+      missing = cause;
+    for (const std::string &word : words)
+      if (text.find(word) == std::string::npos)
+        missing += (missing.empty() ? "" : "; ") + word;
+    check(what, missing.empty());
+    if (!missing.empty() && root())
+      std::cout << "  without: " << missing << '\n' << text << std::endl;
+
+    const std::regex key("\\| `([A-Za-z ]+?)( [0-9]+)?/([^`]+)` \\|");
+    unsigned int     n_keys = 0;
+    for (std::sregex_iterator k(text.begin(), text.end(), key), end; k != end; ++k)
+    {
+      ++n_keys;
+      const std::string path = (*k)[1].str() + ((*k)[2].matched ? " 1" : "") + '/' + (*k)[3].str();
+      try
+      {
+        Parameters::explain(path);
+      }
+      catch (const InputError &)
+      {
+        check("  the key " + path + " exists", false);
+      }
+    }
+    check("  with keys to change, on one page", n_keys > 0 && std::count(text.begin(), text.end(), '\n') < 90);
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  using Type = BoundaryConditionParameters::Type;
+
+  Parameters p;
+  p.bodies              = {box("lower", "3,3,1", {0, 0, 0}, {1, 1, 1}, 100, 0.3),
+                           box("upper", "2,2,1", {0.1, 0.1, 1}, {0.9, 0.9, 2}, 100, 0.3)};
+  p.boundary_conditions = {hold("bottom", region(1, {z_minus}), {0, 1, 2}),
+                           drive("top", region(2, {z_plus}), 2, "-0.1*t")};
+  p.contact_pairs       = {pair(region(2, {z_minus}), region(1, {z_plus}))};
+  p.output.write_vtu    = false;
+
+  auto free             = p;
+  free.output.write_vtu = true;
+  const std::string state =
+      dealii::Utilities::MPI::n_mpi_processes(world()) == 1 ? "failed_state.vtu" : "failed_state.pvtu";
+  expect("held vertically alone, the upper block has three motions left",
+         page(free),
+         "a body can move freely",
+         {"body 2 (upper) moves along (1 0 0)",
+          "body 2 (upper) moves along (0 1 0)",
+          "body 2 (upper) turns about (0 0 1)",
+          "9 of 9 sites are closed, 9 of these slip",
+          state});
+  const std::string fields = contents(state);
+  check("  and its state has the fields",
+        fields.find("residual_force") != std::string::npos && fields.find("det_F") != std::string::npos &&
+            fields.find("status_changes") != std::string::npos && fields.find("CPRESS") != std::string::npos);
+
+  p.boundary_conditions[1] = condition("top", Type::displacement, region(2, {z_plus}), {0, 1, 2}, {"0", "0", "-0.1*t"});
+  const std::string none   = page(p);
+  check("the next run succeeds and leaves no page", none.empty() && contents(state).empty());
+
+  auto pressed                             = p; // out of reach, and nothing but contact to hold it
+  pressed.bodies[1]                        = box("upper", "2,2,1", {0.1, 0.1, 1.5}, {0.9, 0.9, 2.5}, 100, 0.3);
+  pressed.contact_pairs[0].search_distance = 0.1;
+  pressed.boundary_conditions[1]           = press("top", region(2, {z_plus}), "t");
+  expect("a block beyond the search distance",
+         page(pressed),
+         "a body can move freely",
+         {"body 2 (upper) turns about (1 0 0)",
+          "the master is out of the search distance",
+          "9 of 9 sites have no master point within 0.1",
+          "`Contact pair 1/Search distance` | 0.1 | 0.4"});
+
+  auto newton = p;
+  for (auto &body : newton.bodies)
+    body.material.law = MaterialParameters::Law::neo_hookean;
+  newton.newton.maximum_iterations = 2;
+  newton.load_stepping             = {{1.}, {1}};
+  newton.load_stepping.cut_back    = false;
+  expect("Newton without iterations left",
+         page(newton),
+         "Newton's method",
+         {"Newton did not converge in 2 iterations",
+          "`Newton/Maximum iterations` | 2 |",
+          "`Load stepping/Cut back` | false | true",
+          "`Load stepping/Increments` | 1 | 4"});
+
+  auto crushed                         = newton;
+  crushed.newton.maximum_iterations    = 25;
+  crushed.boundary_conditions[1].value = {"0", "0", "-4*t"};
+  expect("a crushed block",
+         page(crushed),
+         "cells are turned inside out",
+         {"with det F <= 0", "`Newton/Line search` | false | true"});
+
+  auto loop = p;
+  use_loops(loop);
+  loop.geometry_loop.maximum_passes = 2;
+  loop.geometry_loop.tolerance      = 1e-14;
+  loop.load_stepping.cut_back       = false;
+  expect("a geometry loop without passes left",
+         page(loop),
+         "the geometry loop does not converge",
+         {"The last passes of the geometry loop",
+          "`Contact pair 1/Normal` | master facet | averaged",
+          "`Geometry loop/Mode`"});
+
+  auto friction                                  = loop;
+  friction.geometry_loop                         = {15, 1., LoopParameters::Mode::fixed_point};
+  friction.threshold_loop                        = {2, 1e-14, LoopParameters::Mode::fixed_point};
+  friction.contact_pairs[0].friction_coefficient = 0.5;
+  friction.boundary_conditions[1].value          = {"0.05*t", "0", "-0.1*t"};
+  expect("a threshold loop without passes left",
+         page(friction),
+         "the ",
+         {"threshold loop", "largest friction coefficient 0.5", "`Threshold loop/Mode` | fixed point | newton"});
+
+  auto slow                             = p;
+  slow.linear_solver.type               = LinearSolverParameters::Type::block;
+  slow.linear_solver.maximum_iterations = 1;
+  slow.load_stepping.cut_back           = false;
+  expect("a Krylov solver without iterations left",
+         page(slow),
+         "the linear solver did not succeed",
+         {"`Linear solver/Type` | block | direct", "`Linear solver/Maximum iterations` | 1 | 4"});
+
+  auto twice          = p; // each side is slave of the other one: the same constraints come twice
+  twice.bodies[0]     = box("lower", "2,2,1", {0, 0, 0}, {1, 1, 1}, 100, 0.3);
+  twice.bodies[1]     = box("upper", "2,2,1", {0, 0, 1}, {1, 1, 2}, 100, 0.3);
+  twice.contact_pairs = {pair(region(2, {z_minus}), region(1, {z_plus})),
+                         pair(region(1, {z_plus}), region(2, {z_minus}))};
+  expect("contact that is asked for twice",
+         page(twice),
+         "a contact constraint repeats another constraint",
+         {"null pivot of the contact multiplier",
+          "components of its displacement that are prescribed: none",
+          "/Slave where`"});
+}
