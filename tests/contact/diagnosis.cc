@@ -187,5 +187,6 @@ int main(int argc, char **argv)
          "a contact constraint repeats another constraint",
          {"null pivot of the contact multiplier",
           "components of its displacement that are prescribed: none",
+          "has the same bodies with slave and master exchanged",
           "/Slave where`"});
 }
