@@ -49,7 +49,6 @@ namespace Nodus
   /// the forces that it started from are still the committed ones.
   void ContactProblem::Implementation::audit_energies()
   {
-    const auto     timer  = profile.time(Phase::output);
     const Energies before = energies;
 
     // What the bodies take in.

@@ -66,6 +66,7 @@ namespace Nodus
       if (parameters.threshold_loop.mode == LoopParameters::Mode::newton || !status->threshold_follows_pressure())
         throw;
       console.remark(std::string("three loops given up: ") + failure.what() + "; again with the coupled threshold");
+      diagnosis.end_attempt(failure.what());
       roll_back();
       merged.threshold = true;
       ++counts.fallbacks;

@@ -179,7 +179,9 @@ namespace Nodus
 
     void write_nodes(std::ostream &out, const Parameters &parameters, const FailureEvidence &evidence)
     {
-      if (!evidence.worst_nodes.empty())
+      // those of a loop that failed between two solutions are in balance
+      if (!evidence.worst_nodes.empty() &&
+          evidence.worst_nodes.front().force.norm() > parameters.newton.force_tolerance * evidence.force_scale)
       {
         out << "## Nodes that are most out of balance\n\nOf the last iterate whose forces exist, relative to the "
                "largest nodal force, "
@@ -256,6 +258,10 @@ namespace Nodus
 
   void Diagnosis::begin_attempt(const std::string &merged)
   {
+    // an attempt with the coupled threshold after one whose threshold loop failed
+    const bool coupled = merged.find("threshold") != std::string::npos && !history_.passes.empty() &&
+                         history_.passes.back().loop == "threshold" && history_.attempts.back().end == history_.end;
+    history_.threshold_passes = coupled ? history_.passes : std::vector<Pass>();
     history_.attempts.push_back({history_.begin, history_.end, merged, ""});
     history_.iterations.clear();
     history_.passes.clear();
@@ -302,8 +308,8 @@ namespace Nodus
     out << "# Why the run stopped\n\n"
         << (parameters_.title.empty() ? "" : parameters_.title + ". ") << "Increment " << history_.increment
         << ", from t = " << history_.begin << " to t = " << history_.end
-        << ", the smallest that was allowed: " << evidence.message
-        << ".\n\nThe last converged state is t = " << evidence.converged << '.'
+        << (parameters_.load_stepping.cut_back ? ", cut back as far as it may be: " : ", not to be cut back: ")
+        << evidence.message << ".\n\nThe last converged state is t = " << evidence.converged << '.'
         << (evidence.state.empty()
                 ? ""
                 : " `" + evidence.state + "` holds the state that is described here, which is not in equilibrium.")

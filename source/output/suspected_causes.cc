@@ -275,6 +275,12 @@ namespace Nodus
                 ? text(friction, " of the ", sites.size(), " worst went between stick and slip")
                 : text(sites.size() - friction, " of the ", sites.size(), " worst went between open and closed"));
       }
+      if (pair < parameters.contact_pairs.size() &&
+          parameters.contact_pairs[pair].status_test == ContactPairParameters::StatusTest::raw)
+        cause.changes.push_back({in_pair(pair, "Status test"),
+                                 "raw",
+                                 "weighted",
+                                 "multipliers of neighbours swing about the pressure, their weighted mean does not"});
       add_smaller_increments(parameters, history, cause);
       if (pair < parameters.contact_pairs.size())
       {
@@ -291,10 +297,10 @@ namespace Nodus
       causes.push_back(cause);
     }
 
-    std::vector<double> values_of(const History &history, const std::string &loop)
+    std::vector<double> values_of(const std::vector<Diagnosis::Pass> &passes, const std::string &loop)
     {
       std::vector<double> values;
-      for (const auto &pass : history.passes)
+      for (const auto &pass : passes)
         if (pass.loop == loop)
         {
           if (pass.number == 1)
@@ -306,11 +312,12 @@ namespace Nodus
 
     void add_threshold_loop(const Parameters &parameters, const History &history, Causes &causes)
     {
-      const std::vector<double> values = values_of(history, "threshold");
-      const double              rate   = contraction(values);
-      const double              last   = values.empty() ? 0. : values.back();
-      SuspectedCause            cause{rate < no_contraction ? "the threshold loop converges slowly"
-                                                            : "the friction threshold loop does not contract",
+      const std::vector<double> values =
+          values_of(history.threshold_passes.empty() ? history.passes : history.threshold_passes, "threshold");
+      const double   rate = contraction(values);
+      const double   last = values.empty() ? 0. : values.back();
+      SuspectedCause cause{rate < no_contraction ? "the threshold loop converges slowly"
+                                                 : "the friction threshold loop does not contract",
                            {},
                            {}};
       cause.evidence.push_back("changes of the threshold in the last passes: " + joined(last_of(values, 6)));
@@ -339,7 +346,7 @@ namespace Nodus
                            Causes                &causes)
     {
       const bool                cycle  = evidence.kind == Kind::geometry_cycle;
-      const std::vector<double> values = values_of(history, "geometry");
+      const std::vector<double> values = values_of(history.passes, "geometry");
       const double              rate   = contraction(values);
       const double              last   = values.empty() ? 0. : values.back();
       SuspectedCause cause{cycle ? "normals jump between the facets of the master: the geometry loop comes back to the "
@@ -567,6 +574,8 @@ namespace Nodus
     add_partners(parameters, history, evidence, causes);
     if (kind == Kind::inverted_cell || evidence.worst_cell.det_F < Diagnosis::distorted)
       add_distorted_cells(parameters, history, evidence, causes);
+    if (!history.threshold_passes.empty())
+      add_threshold_loop(parameters, history, causes);
     if (!statuses && !in_a_loop && chattering)
       add_status_cycle(parameters, history, evidence, causes);
     if (kind == Kind::newton_limit || kind == Kind::newton_stalled || kind == Kind::not_finite || causes.empty())

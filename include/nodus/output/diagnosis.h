@@ -156,6 +156,7 @@ namespace Nodus
       std::vector<Attempt>           attempts;
       std::vector<Tables::Iteration> iterations;
       std::vector<Pass>              passes;
+      std::vector<Pass>              threshold_passes; ///< of the threshold loop that the last attempt goes without
     };
     const History &history() const
     {
