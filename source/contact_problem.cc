@@ -23,16 +23,6 @@ namespace Nodus
       return materials;
     }
 
-    /// Young's modulus of each pair's softest material.
-    std::vector<double> pair_stiffness(const ContactSurfaces                        &surfaces,
-                                       const std::vector<std::unique_ptr<Material>> &materials)
-    {
-      std::vector<double> stiffness(surfaces.n_pairs(), std::numeric_limits<double>::max());
-      for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
-        for (const unsigned int body : surfaces.bodies(p))
-          stiffness[p] = std::min(stiffness[p], materials[body]->youngs_modulus());
-      return stiffness;
-    }
   } // namespace
 
   ContactProblem::Implementation::Implementation(const Parameters &p, MPI_Comm comm, std::ostream &log)
@@ -59,14 +49,18 @@ namespace Nodus
       treatments.push_back(body.volumetric_treatment);
     solid =
         std::make_unique<SolidAssembler>(dof_handler, *mapping, materials, boundary_conditions->loads(), treatments);
+    stabilisation = std::make_unique<ViscousStabilisation>(
+        parameters.load_stepping.viscous_stabilisation, bodies, materials, dof_handler, *mapping);
     surfaces = std::make_unique<ContactSurfaces>(parameters.contact_pairs, bodies, dof_handler, *mapping);
     surfaces->set_fixed(boundary_conditions->homogeneous_constraints());
-    // rho_n = factor E/h: the stiffness of a layer one slave face deep
-    const std::vector<double> stiffness = pair_stiffness(*surfaces, materials);
-    std::vector<double>       augmentation;
-    for (unsigned int p = 0; p < stiffness.size(); ++p)
-      augmentation.push_back(parameters.contact_pairs[p].normal_augmentation_factor * stiffness[p] /
-                             surfaces->face_size(p));
+    // rho_n = factor E/h: the stiffness of a layer one slave face deep; a softer one lets friction converge slowly
+    std::vector<double> stiffness, augmentation;
+    for (unsigned int p = 0; p < parameters.contact_pairs.size(); ++p)
+    {
+      const auto &pair = parameters.contact_pairs[p];
+      stiffness.push_back(materials[pair.slave.body - 1]->youngs_modulus());
+      augmentation.push_back(pair.normal_augmentation_factor * stiffness[p] / surfaces->face_size(p));
+    }
     status  = std::make_unique<Status>(parameters.contact_pairs, *surfaces, augmentation, stiffness);
     contact = std::make_unique<ContactAssembler>(*surfaces, pairing, jump, weights, *status);
 
@@ -76,7 +70,8 @@ namespace Nodus
     layout.reinit(committed);
     layout.reinit(system.rhs);
     relevant_u.reinit(layout.owned[0], relevant, communicator);
-    for (Vector *v : {&internal, &external, &contact_force, &reaction, &released, &out_of_balance, &committed_applied})
+    for (Vector *v :
+         {&internal, &external, &contact_force, &reaction, &released, &drag, &out_of_balance, &committed_applied})
       v->reinit(layout.owned[0], communicator);
 
     length_scale = 0.;

@@ -19,13 +19,19 @@ namespace Nodus
 
   double Energies::throughput() const
   {
-    return std::max({std::abs(external), std::abs(released), std::abs(stored), std::abs(friction), std::abs(plastic)});
+    return std::max({std::abs(external),
+                     std::abs(released),
+                     std::abs(stored),
+                     std::abs(friction),
+                     std::abs(plastic),
+                     std::abs(stabilisation)});
   }
 
   Energies &Energies::operator-=(const Energies &other)
   {
     external -= other.external;
     released -= other.released;
+    stabilisation -= other.stabilisation;
     contact -= other.contact;
     stored -= other.stored;
     friction -= other.friction;
@@ -38,6 +44,7 @@ namespace Nodus
   {
     const auto &constraints = boundary_conditions->homogeneous_constraints();
     Vector      forces(external);
+    forces -= drag;
     for (const DoFIndex i : surfaces->layout().owned[0])
       if (constraints.is_constrained(i))
         forces(i) = internal(i) + contact_force(i);
@@ -55,13 +62,14 @@ namespace Nodus
     const Vector applied = applied_forces();
     const double rest = release_fraction(time), rest_before = release_fraction(path.time());
     const auto  &constraints = boundary_conditions->homogeneous_constraints();
-    double       sums[6]     = {0., 0., 0., 0., 0., 0.}; // in the order of the members of Energies
+    double       sums[7]     = {0., 0., 0., 0., 0., 0., 0.}; // in the order of the members of Energies
     for (const DoFIndex i : surfaces->layout().owned[0])
     {
       const double moved   = solution.block(0)(i) - committed.block(0)(i);
       const double release = constraints.is_constrained(i) ? 0. : 0.5 * (rest_before + rest) * reaction(i) * moved;
       sums[0] += 0.5 * (committed_applied(i) + applied(i)) * moved - release;
       sums[1] += release;
+      sums[6] -= drag(i) * moved; // constant in the increment
     }
 
     // What contact does. The residual is minus the force on the slave.
@@ -104,7 +112,8 @@ namespace Nodus
     energies.contact += sums[2];
     energies.stored = sums[3];
     energies.friction += sums[4];
-    energies.plastic  = sums[5];
+    energies.plastic = sums[5];
+    energies.stabilisation += sums[6];
     committed_applied = applied;
 
     Energies increment = energies;

@@ -2,6 +2,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <iomanip>
 #include <sstream>
 
 namespace Nodus
@@ -35,6 +36,7 @@ namespace Nodus
         continue;
       }
       warn_of_lost_partners();
+      report_stabilisation();
       commit();
       const unsigned int increment = path.increment();
       path.accept(counts.newton, counts.fallbacks == 0);
@@ -79,6 +81,32 @@ namespace Nodus
     return (path.interval_end() - t) / (path.interval_end() - path.interval_begin());
   }
 
+  /// Says how much of the balance of the increment is due to viscous stabilisation.
+  void ContactProblem::Implementation::report_stabilisation()
+  {
+    if (!stabilisation->acts())
+      return;
+    std::ostringstream text;
+    text << "viscous stabilisation: largest nodal force " << drag.linfty_norm() << ", " << std::setprecision(2)
+         << 100. * drag.linfty_norm() / force_scale << " % of the largest one of all";
+    console.remark(text.str());
+  }
+
+  /// Names the rigid motions that nothing holds as the increment begins: contact has to, or the system is singular.
+  void ContactProblem::Implementation::warn_of_free_motions()
+  {
+    RigidMotions motions(bodies, dof_handler, *mapping, OwnedNodes(dof_handler, *mapping), solution.block(0));
+    motions.hold_prescribed(boundary_conditions->homogeneous_constraints());
+    motions.hold_springs(parameters.boundary_conditions, time);
+    motions.hold_contact(*surfaces, pairing, jump, *status, state, residual);
+    std::string text;
+    for (const std::string &motion : motions.free())
+      text += (text.empty() ? "" : "; ") + motion;
+    if (!text.empty())
+      console.remark("nothing holds these motions as the increment begins: " + text +
+                     (stabilisation->acts() ? "; viscous stabilisation does" : "; contact has to close at once"));
+  }
+
   /// Sets the boundary conditions of time @p t. Where a displacement was prescribed until the interval began, the force
   /// that held it goes to zero in the course of the interval.
   void ContactProblem::Implementation::impose(const double t)
@@ -88,6 +116,9 @@ namespace Nodus
       surfaces->set_fixed(boundary_conditions->homogeneous_constraints());
     const auto  &constraints = boundary_conditions->homogeneous_constraints();
     const double interval_1  = parameters.load_stepping.interval_ends.front();
+    stabilisation->set_increment(path.time(), t, path.interval_begin(), path.interval_end());
+    drag            = 0.;
+    motions_unknown = path.time() == path.interval_begin() && surfaces->n_pairs() > 0;
     status->set_resolved_interference(std::min(1., t / interval_1));
     const double rest = release_fraction(t);
     for (const DoFIndex i : surfaces->layout().owned[0])

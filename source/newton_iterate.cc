@@ -181,6 +181,15 @@ namespace Nodus
       solid->tangent(relevant_u, time, constraints, system.bulk, system.rhs.block(0), internal, external);
       external += released;
       system.rhs.block(0) += released;
+      if (stabilisation->acts())
+      {
+        Vector moved(solution.block(0));
+        moved -= committed.block(0);
+        drag = 0.;
+        stabilisation->add(moved, constraints, system.bulk, drag);
+        external += drag;
+        system.rhs.block(0) += drag;
+      }
     }
     if (merged.geometry && !first)
       pair_surfaces();
@@ -193,6 +202,8 @@ namespace Nodus
 
     const Vector bulk_rhs(system.rhs.block(0));
     Norms        norms = assemble_contact(constraints);
+    if (std::exchange(motions_unknown, false))
+      warn_of_free_motions();
     // Newton starts with the statuses that it inherits. Where prescribed displacements have just moved the boundary and
     // left the bulk out of balance, gaps count but pressures do not.
     const bool moved     = std::exchange(prescribed_before, norms.prescribed) > parameters.newton.contact_tolerance;
@@ -376,6 +387,6 @@ namespace Nodus
         here = part;
     return "the displacement of node " + here +
            ": its body is free to move; hold it with a boundary condition, or close the contact first ('Initial status "
-           "= closed')";
+           "= closed'), or set 'Load stepping/Viscous stabilisation = 1e-4'";
   }
 } // namespace Nodus

@@ -323,6 +323,12 @@ namespace Nodus
                         "An increment with at most so many Newton iterations, and no merged iteration given up, is "
                         "easy: the next one may be twice as large [-].",
                         count);
+      prm.add_parameter(
+          "Viscous stabilisation",
+          load.viscous_stabilisation,
+          "Dashpots at all nodes for bodies that nothing holds before contact closes, relative to the "
+          "stiffness of the body, e.g. 1e-4; they fade in the course of each interval and are reported [-].",
+          not_negative);
     }
 
     void add(ParameterHandler &prm, OutputParameters &output)

@@ -312,6 +312,10 @@ namespace Nodus
                       "has " + std::to_string(load.increments.size()) + " entries for " +
                           std::to_string(load.interval_ends.size()) +
                           " entries of Interval ends; give one number for each interval");
+      section.require(load.viscous_stabilisation == 0. ||
+                          *std::min_element(load.increments.begin(), load.increments.end()) > 1,
+                      "Viscous stabilisation",
+                      "is gone at the end of an interval; give every interval 2 Increments at least");
       section.require(load.maximum_increment == 0. || load.minimum_increment <= load.maximum_increment,
                       "Minimum increment",
                       "is larger than Maximum increment; lower it");

@@ -4,6 +4,7 @@
 #include <nodus/bulk/boundary_conditions.h>
 #include <nodus/bulk/material.h>
 #include <nodus/bulk/solid_assembler.h>
+#include <nodus/bulk/viscous_stabilisation.h>
 #include <nodus/contact/contact_assembler.h>
 #include <nodus/contact/rigid_motions.h>
 #include <nodus/contact_problem.h>
@@ -83,6 +84,8 @@ namespace Nodus
     double                   release_fraction(double t) const;
     void                     roll_back();
     void                     warn_of_lost_partners();
+    void                     warn_of_free_motions();
+    void                     report_stabilisation();
     std::string              diagnose(const SolverFailure &failure);
     FailureEvidence          evidence_of(const SolverFailure &failure);
     void                     find_worst_nodes(const OwnedNodes &nodes, FailureEvidence &evidence) const;
@@ -134,14 +137,16 @@ namespace Nodus
     double                        stiffness_scale = 0.; ///< largest diagonal entry of the first bulk tangent
     double                        length_scale; ///< displacements are measured against this when the step moves nothing
 
-    double               committed_stiffness_scale = 0.;
-    Vector               reaction; ///< of what was prescribed when the last interval ended; what is released sheds it
-    Vector               released; ///< what is left of it now where nothing is prescribed any more
-    Energies             energies; ///< up to the last converged increment
-    Vector               committed_applied;          ///< applied_forces() at its end
-    std::vector<Vector3> committed_site_force;       ///< on the slave there, right at owned sites
-    Pairing              committed_pairing;          ///< at the start of the load step
-    std::vector<double>  nodal_area, committed_area; ///< that the multipliers of solution and committed refer to
+    double committed_stiffness_scale = 0.;
+    Vector reaction; ///< of what was prescribed when the last interval ended; what is released sheds it
+    std::unique_ptr<ViscousStabilisation> stabilisation;
+    Vector                                drag;     ///< of it, part of the external forces
+    Vector                                released; ///< what is left of it now where nothing is prescribed any more
+    Energies                              energies; ///< up to the last converged increment
+    Vector                                committed_applied;    ///< applied_forces() at its end
+    std::vector<Vector3>                  committed_site_force; ///< on the slave there, right at owned sites
+    Pairing                               committed_pairing;    ///< at the start of the load step
+    std::vector<double> nodal_area, committed_area; ///< that the multipliers of solution and committed refer to
 
     ContactState    state;
     ContactResidual residual;
@@ -152,8 +157,9 @@ namespace Nodus
     std::string     first_changed, cycling;        ///< sites of the last change of statuses, and of the last cycle
     unsigned int    geometry_cycles = 0;           ///< with period 2, in the geometry loop at hand
     bool            paired_before = false, newton_starts = true;
-    double          prescribed_before = 0.; ///< still to be met at the last assembly, relative
-    MergedLoops     merged;                 ///< in this attempt at the increment
+    bool            motions_unknown   = false; ///< of the bodies, as the first increment of an interval begins
+    double          prescribed_before = 0.;    ///< still to be met at the last assembly, relative
+    MergedLoops     merged;                    ///< in this attempt at the increment
 
     LoadStepping    path;
     bool            restart = false; ///< asked for: continue from a checkpoint

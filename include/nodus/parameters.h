@@ -242,9 +242,10 @@ namespace Nodus
     std::vector<double>       interval_ends = {1.}; ///< increasing times; the first interval starts at 0
     std::vector<unsigned int> increments    = {1};  ///< per interval
     bool                      cut_back      = true; ///< halve increments that fail
-    double       minimum_increment = 0.; ///< of time, that cut-backs stop at; 0 = 1/64 of the interval's increments
-    double       maximum_increment = 0.; ///< of time, that increments grow to; 0 = the interval's increments
-    unsigned int easy_iterations   = 10; ///< of Newton, up to which the next increment may be twice as large
+    double       minimum_increment     = 0.; ///< of time, that cut-backs stop at; 0 = 1/64 of the interval's increments
+    double       maximum_increment     = 0.; ///< of time, that increments grow to; 0 = the interval's increments
+    unsigned int easy_iterations       = 10; ///< of Newton, up to which the next increment may be twice as large
+    double       viscous_stabilisation = 0.; ///< [-], see ViscousStabilisation; 0: none
   };
 
   struct OutputParameters

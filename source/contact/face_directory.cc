@@ -46,7 +46,6 @@ namespace Nodus
             record.pair        = pair;
             record.side        = side;
             record.rank        = rank_;
-            record.body        = cell->material_id();
             for (unsigned int i = 0; i < base.n_dofs_per_cell(); ++i)
               if (std::abs(support_points[i][normal] - f % 2) < 1e-12)
               {

@@ -33,7 +33,6 @@ namespace Nodus
       , slave_faces_(pairs.size())
       , master_faces_(pairs.size())
       , face_size_(pairs.size(), 0.)
-      , bodies_(pairs.size())
   {
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
@@ -62,7 +61,7 @@ namespace Nodus
     for (unsigned int p = 0; p < pairs.size(); ++p)
       own.insert(own.end(), directory_.own(p, master_side).begin(), directory_.own(p, master_side).end());
     take_master_faces(own);
-    measure_faces(bodies.size());
+    measure_faces();
     if (dealii::Utilities::MPI::n_mpi_processes(communicator_) > 1 && n_pairs() > 0)
       fetch(std::vector<Vector3>(nodes_.size()));
   }
@@ -242,28 +241,16 @@ namespace Nodus
     layout_.owned[2].add_range(2 * first, 2 * (first + n_owned_slave_nodes_));
   }
 
-  void ContactSurfaces::measure_faces(const unsigned int n_bodies)
+  void ContactSurfaces::measure_faces()
   {
-    const std::vector<Point>  X = positions(std::vector<Vector3>(nodes_.size()));
-    std::vector<unsigned int> touches(n_pairs() * n_bodies, 0);
+    const std::vector<Point> X = positions(std::vector<Vector3>(nodes_.size()));
     for (unsigned int p = 0; p < n_pairs(); ++p)
-    {
       for (const auto &face : slave_faces_[p])
         if (face.owner == rank_)
           face_size_[p] += std::sqrt(FaceGeometry(face, FaceShape(degree_, 0.5, 0.5), X).area_vector().norm());
-      for (const auto side : {slave_side, master_side})
-        for (const FaceRecord &face : directory_.own(p, side))
-          touches[p * n_bodies + face.body] = 1;
-    }
     dealii::Utilities::MPI::sum(face_size_, communicator_, face_size_);
-    dealii::Utilities::MPI::max(touches, communicator_, touches);
     for (unsigned int p = 0; p < n_pairs(); ++p)
-    {
       face_size_[p] /= directory_.size(p, slave_side);
-      for (unsigned int b = 0; b < n_bodies; ++b)
-        if (touches[p * n_bodies + b] > 0)
-          bodies_[p].insert(b);
-    }
   }
 
   bool ContactSurfaces::fetch_masters(const Vector &u)

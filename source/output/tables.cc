@@ -27,7 +27,7 @@ namespace Nodus
 
     constexpr auto energy_header = "increment,time,external work [energy],released work [energy],contact work [energy],"
                                    "stored energy [energy],frictional dissipation [energy],"
-                                   "plastic dissipation [energy],imbalance [energy]\n";
+                                   "plastic dissipation [energy],stabilisation [energy],imbalance [energy]\n";
 
     /// Imbalances below this part of the energies are round-off.
     constexpr double round_off = 1e-13;
@@ -102,7 +102,8 @@ namespace Nodus
     const double imbalance  = energies.imbalance();
     energy_row << increment << ',' << t << ',' << energies.external << ',' << energies.released << ','
                << energies.contact << ',' << energies.stored << ',' << energies.friction << ',' << energies.plastic
-               << ',' << (std::abs(imbalance) > round_off * energies.throughput() ? imbalance : 0.) << '\n';
+               << ',' << energies.stabilisation << ','
+               << (std::abs(imbalance) > round_off * energies.throughput() ? imbalance : 0.) << '\n';
     rows_.energies += energy_row.str();
     finish_iterations();
     write();

@@ -26,13 +26,13 @@ namespace Nodus
     DoFIndex     dofs[9][dim];
     double       X[9][dim]; ///< reference positions
     double       orientation;
-    unsigned int pair, side, rank, body;
+    unsigned int pair, side, rank;
     unsigned int number; ///< in its pair and side, in the order of the cells, which does not depend on the ranks
 
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)
     {
-      archive &dofs &X &orientation &pair &side &rank &body &number;
+      archive &dofs &X &orientation &pair &side &rank &number;
     }
     bool operator<(const FaceRecord &other) const
     {

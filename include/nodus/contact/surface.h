@@ -14,7 +14,6 @@
 #include <deal.II/lac/affine_constraints.h>
 
 #include <array>
-#include <set>
 #include <unordered_map>
 #include <vector>
 
@@ -187,11 +186,6 @@ namespace Nodus
     {
       return face_size_[pair];
     }
-    /// Indices of the bodies of the pair's slave and master faces.
-    const std::set<unsigned int> &bodies(const unsigned int pair) const
-    {
-      return bodies_[pair];
-    }
     const BlockLayout &layout() const
     {
       return layout_;
@@ -221,7 +215,7 @@ namespace Nodus
   private:
     std::string overlap() const;
     std::string repeated_face() const;
-    void        measure_faces(unsigned int n_bodies);
+    void        measure_faces();
     void        take_slave_faces();
     void        make_points();
     void        number_sites();
@@ -247,7 +241,6 @@ namespace Nodus
     GhostExchange                              slave_exchange_, site_exchange_;
     std::vector<std::vector<SurfaceFace>>      slave_faces_, master_faces_;
     std::vector<double>                        face_size_;
-    std::vector<std::set<unsigned int>>        bodies_;
     Vector                                     fixed_mask_, fetched_at_; ///< fetched_at_: displacement
     std::vector<std::array<bool, dim>>         fixed_;
     BlockLayout                                layout_;

@@ -16,10 +16,11 @@ namespace Nodus
     double stored   = 0.; ///< in the bodies and in springs
     double friction = 0.; ///< dissipated by friction
     double plastic  = 0.; ///< dissipated by plastic flow
+    double stabilisation = 0.; ///< dissipated by viscous stabilisation
 
     double imbalance() const
     {
-      return external + released + contact - stored - friction - plastic;
+      return external + released + contact - stored - friction - plastic - stabilisation;
     }
     /// What came in and went where, as a scale.
     double throughput() const;
@@ -29,7 +30,7 @@ namespace Nodus
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)
     {
-      archive &external &released &contact &stored &friction &plastic;
+      archive &external &released &contact &stored &friction &plastic &stabilisation;
     }
   };
 } // namespace Nodus

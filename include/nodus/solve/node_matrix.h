@@ -161,6 +161,10 @@ namespace Nodus
     {
       return values_.data() + 9 * std::size_t(pattern_->start[i]);
     }
+    void add_to_diagonal(const unsigned int dof, const double value)
+    {
+      values_[9 * std::size_t(pattern_->start[dof / dim]) + 4 * (dof % dim)] += value;
+    }
     /// True when the row of an owned degree of freedom holds nothing but the diagonal: a constrained one.
     bool decoupled(unsigned int dof) const;
 
