@@ -107,12 +107,18 @@ namespace Nodus
     if (failure.kind() == SolverFailure::Kind::over_constraint)
       find_repeated_constraint(evidence);
 
+    evidence.free_motions = free_motions(nodes);
+    return evidence;
+  }
+
+  /// Rigid motions that nothing holds now, by name. Collective.
+  std::vector<std::string> ContactProblem::Implementation::free_motions(const OwnedNodes &nodes) const
+  {
     RigidMotions motions(bodies, dof_handler, *mapping, nodes, solution.block(0));
     motions.hold_prescribed(boundary_conditions->homogeneous_constraints());
     motions.hold_springs(parameters.boundary_conditions, time);
     motions.hold_contact(*surfaces, pairing, jump, *status, state, residual);
-    evidence.free_motions = motions.free();
-    return evidence;
+    return motions.free();
   }
 
   void ContactProblem::Implementation::find_worst_nodes(const OwnedNodes &nodes, FailureEvidence &evidence) const

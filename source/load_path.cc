@@ -2,7 +2,9 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 namespace Nodus
@@ -20,6 +22,7 @@ namespace Nodus
       try
       {
         solve_increment();
+        check_stabilised_motion();
       }
       catch (const SolverFailure &failure)
       {
@@ -92,15 +95,30 @@ namespace Nodus
     console.remark(text.str());
   }
 
+  /// A body that nothing but stabilisation holds may cross a surface in one increment, which satisfies the equations.
+  void ContactProblem::Implementation::check_stabilised_motion()
+  {
+    if (!stabilisation->acts() || surfaces->n_pairs() == 0)
+      return;
+    double limit = std::numeric_limits<double>::max();
+    for (unsigned int p = 0; p < surfaces->n_pairs(); ++p)
+      limit = std::min(limit, 0.5 * surfaces->face_size(p));
+    std::string  worst;
+    const double moved = largest_difference(solution.block(0), committed.block(0), &worst);
+    if (moved <= limit)
+      return;
+    std::ostringstream message;
+    message << "the node " << worst << " moves by " << moved
+            << " against viscous stabilisation, more than half of a slave face (" << limit
+            << "); raise 'Load stepping/Viscous stabilisation'";
+    throw SolverFailure(message.str(), SolverFailure::Kind::free_body);
+  }
+
   /// Names the rigid motions that nothing holds as the increment begins: contact has to, or the system is singular.
   void ContactProblem::Implementation::warn_of_free_motions()
   {
-    RigidMotions motions(bodies, dof_handler, *mapping, OwnedNodes(dof_handler, *mapping), solution.block(0));
-    motions.hold_prescribed(boundary_conditions->homogeneous_constraints());
-    motions.hold_springs(parameters.boundary_conditions, time);
-    motions.hold_contact(*surfaces, pairing, jump, *status, state, residual);
     std::string text;
-    for (const std::string &motion : motions.free())
+    for (const std::string &motion : free_motions(OwnedNodes(dof_handler, *mapping)))
       text += (text.empty() ? "" : "; ") + motion;
     if (!text.empty())
       console.remark("nothing holds these motions as the increment begins: " + text +

@@ -387,6 +387,6 @@ namespace Nodus
         here = part;
     return "the displacement of node " + here +
            ": its body is free to move; hold it with a boundary condition, or close the contact first ('Initial status "
-           "= closed'), or set 'Load stepping/Viscous stabilisation = 1e-4'";
+           "= closed'), or set 'Load stepping/Viscous stabilisation = 1e-2'";
   }
 } // namespace Nodus

@@ -327,7 +327,7 @@ namespace Nodus
           "Viscous stabilisation",
           load.viscous_stabilisation,
           "Dashpots at all nodes for bodies that nothing holds before contact closes, relative to the "
-          "stiffness of the body, e.g. 1e-4; they fade in the course of each interval and are reported [-].",
+          "stiffness of the body, e.g. 1e-2; they fade in the course of each interval and are reported [-].",
           not_negative);
     }
 

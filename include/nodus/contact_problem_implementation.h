@@ -86,8 +86,10 @@ namespace Nodus
     void                     warn_of_lost_partners();
     void                     warn_of_free_motions();
     void                     report_stabilisation();
+    void                     check_stabilised_motion();
     std::string              diagnose(const SolverFailure &failure);
     FailureEvidence          evidence_of(const SolverFailure &failure);
+    std::vector<std::string> free_motions(const OwnedNodes &nodes) const;
     void                     find_worst_nodes(const OwnedNodes &nodes, FailureEvidence &evidence) const;
     void                     find_changing_sites(FailureEvidence &evidence) const;
     void                     find_partners(FailureEvidence &evidence) const;
