@@ -289,6 +289,7 @@ class RandomCase:
             "mu": self.friction, "stiffness upper/lower": self.stiffness_ratio, "strain": self.strain,
             "cells upper/lower": self.mesh_ratio, "gap": self.gap, "cell": self.cell, "size": self.size, "units": unit,
             "driven": self.driven, "drag": self.travel, "curved": self.curved,
+            "kind of weights": "consistent" if any(p.get("Weights") == "consistent" for p in self.pairs) else "others",
             "laws": [law["Law"] for law in self.laws[: len(self.grids)]], "cells": sum(self.cells),
             "pairs": self.pairs,
         }  # fmt: skip
@@ -302,15 +303,23 @@ class RandomCase:
 # Why runs stop, by what their message says; the first that fits counts.
 CAUSES = {
     "statuses cycle": "status(es| loop) cycle",
-    "geometry cycle": "geometry loop cycles",
-    "threshold loop": "threshold loop",
-    "geometry loop": "geometry loop",
-    "status loop": "status loop",
-    "linear solver": "linear solver|Krylov|FGMRES|CG|singular|MUMPS|multigrid",
-    "distorted cell": "inverted|distort|det|Jacobian|volume",
+    "geometry cycles": "geometry loop cycles",
+    "threshold loop": "threshold loop did",
+    "geometry loop": "geometry loop did",
+    "status loop": "status loop did",
+    "linear solver": "solver: relative residual|singular|MUMPS",
+    "cell turned inside out": "turned inside out",
     "Newton": "Newton",
-    "input": "input error",
+    "input error": "input error",
 }
+
+
+def classify(reason, killed):
+    if killed:
+        return "time limit"
+    if not re.match(r"nodus: (no solution|input error): .{40}", reason):
+        return "NOT EXPLAINED"
+    return next((cause for cause, words in CAUSES.items() if re.search(words, reason)), "other")
 
 
 def run_case(options, n):
@@ -342,11 +351,7 @@ def run_case(options, n):
            "lost": text.count("have no master point any more")}  # fmt: skip
     row["reason"] = text.strip().splitlines()[-1] if child.returncode else ""
     if child.returncode:
-        row["cause"] = next((c for c, words in CAUSES.items() if re.search(words, row["reason"], re.I)), "other")
-        if stopped:
-            row["cause"] = "time limit"
-        elif child.returncode < 0 or not re.match(r"nodus: (no solution|input error): .{40}", row["reason"]):
-            row["cause"] = "NOT EXPLAINED"
+        row["cause"] = classify(row["reason"], stopped)
     try:
         found = checks.check(results, case.facts)
     except checks.results.ResultsError as error:
@@ -376,8 +381,7 @@ def summary(rows):
     for name, value in lines:
         print(f"| {name} | {value} |")
     print("\n| | cases | finished | cut-backs | fallbacks | Newton iterations |\n|---|---|---|---|---|---|")
-    groups = [("scheme", r"averaged|nodal|integration point"), ("degree", "1|2"), ("loops", ""), ("solver", ""), ("shape", "")]
-    for key, _ in groups:
+    for key in ("scheme", "degree", "loops", "solver", "shape", "kind of weights"):
         for value in sorted({r[key] for r in rows}, key=str):
             part = [r for r in rows if r[key] == value]
             print(f"| {key} {value} | {len(part)} | {sum(r['exit'] == 0 for r in part)} | "
