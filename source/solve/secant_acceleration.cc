@@ -9,6 +9,8 @@ namespace Nodus
   {
     /// Bounds of omega: factors of the map from -infinity (1) to 0.9 (-9); beyond, two passes tell too little.
     constexpr double smallest_omega = -9., largest_omega = 1.;
+    /// Between these, factors from -0.5 to 0.5, the plain iteration is fast enough and does not mix directions.
+    constexpr double plain_from = -1., plain_to = 1. / 3.;
   } // namespace
 
   std::vector<double> SecantAcceleration::next(const std::vector<double> &value, const std::vector<double> &image)
@@ -28,8 +30,10 @@ namespace Nodus
     }
     dealii::Utilities::MPI::sum(
         dealii::ArrayView<const double>(sums, 3), communicator_, dealii::ArrayView<double>(sums, 3));
-    const bool   before = dealii::Utilities::MPI::max(first ? 0 : 1, communicator_) == 1;
-    const double omega  = before && sums[1] > 0. ? std::clamp(sums[0] / sums[1], smallest_omega, largest_omega) : 0.;
+    const bool before = dealii::Utilities::MPI::max(first ? 0 : 1, communicator_) == 1;
+    double     omega  = before && sums[1] > 0. ? std::clamp(sums[0] / sums[1], smallest_omega, largest_omega) : 0.;
+    if (omega > plain_from && omega < plain_to)
+      omega = 0.;
     std::vector<double> result(image);
     for (unsigned int i = 0; i < result.size(); ++i)
       result[i] -= omega * error[i];

@@ -86,7 +86,13 @@ namespace
     print("\ncontact pair", pair.name);
     print("slave", pair.slave);
     print("master", pair.master);
+    print_choice("contact law", pair.contact_law);
+    print_choice("friction law", pair.friction_law);
     print("friction coefficient", pair.friction_coefficient);
+    print("second friction coefficient", pair.second_friction_coefficient);
+    print("friction direction", pair.friction_direction);
+    print("friction factor", pair.friction_factor);
+    print("shear limit", pair.shear_limit);
     print("normal augmentation factor", pair.normal_augmentation_factor);
     print("tangential augmentation factor", pair.tangential_augmentation_factor);
     print_choice("surface measure", pair.surface_measure);
@@ -100,6 +106,9 @@ namespace
     print("search distance", pair.search_distance);
     print("projection tolerance", pair.projection_tolerance);
     print_choice("initial status", pair.initial_status);
+    print_choice("initial overclosure", pair.initial_overclosure);
+    print("adjustment distance", pair.adjustment_distance);
+    print("overclosure limit", pair.overclosure_limit);
     print_choice("status test", pair.status_test);
   }
 
@@ -161,6 +170,7 @@ namespace
     print("minimum increment", parameters.load_stepping.minimum_increment);
     print("maximum increment", parameters.load_stepping.maximum_increment);
     print("easy iterations", parameters.load_stepping.easy_iterations);
+    print("viscous stabilisation", parameters.load_stepping.viscous_stabilisation);
     print("\nresults folder", parameters.output.results_folder);
     print("Write VTU", parameters.output.write_vtu);
     print("VTU interval", parameters.output.vtu_interval);

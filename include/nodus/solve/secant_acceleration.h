@@ -12,8 +12,9 @@ namespace Nodus
   ///
   ///     x_next = G - omega f,   omega = (G - G') . (f - f') / |f - f'|^2.
   ///
-  /// A map that contracts, or grows, by one factor in every direction is solved in one secant, which is what thresholds
-  /// of friction do along a load path (factor -mu/s, theory section 5.4).
+  /// and x_next = G where that contracts by a factor of 2 at least. A map that contracts, or grows, by one factor in
+  /// every direction is solved in one secant, which is what thresholds of friction do along a load path (factor -mu/s,
+  /// theory section 5.4).
   class SecantAcceleration
   {
   public:
