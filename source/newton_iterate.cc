@@ -115,7 +115,7 @@ namespace Nodus
               << " inside the master, the limit is " << limit << "; move the bodies apart, or raise 'Contact pair "
               << p + 1 << "/Overclosure limit' if this is meant";
       if (worst.max > limit)
-        throw InputError(parameters.file + ": " + message.str());
+        throw InputError(message.str());
     }
     status->initialize(pairing, distance);
   }
