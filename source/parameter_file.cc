@@ -283,12 +283,14 @@ namespace Nodus
                        [&](const DeclaredKey &d) { return d.section == entry.section && d.key == entry.key; });
       if (found == declared.end())
       {
-        // the right name in the wrong place, unless the place has a name like it
+        // the right name in the wrong place, or one like it, unless the place has a name like it
         std::vector<std::string> elsewhere;
         if (nearest(entry.key, keys[entry.section]).empty())
-          for (const auto &d : declared)
-            if (!nearest(entry.key, {d.key}).empty() && elsewhere.size() < 3)
-              elsewhere.push_back(d.path());
+          for (const bool exact : {true, false})
+            if (elsewhere.empty())
+              for (const auto &d : declared)
+                if ((exact ? d.key == entry.key : !nearest(entry.key, {d.key}).empty()) && elsewhere.size() < 3)
+                  elsewhere.push_back(d.path());
         throw InputError(entry.origin + ": unknown key '" + entry.key + "' " + in_section(entry.section) +
                          (elsewhere.empty() ? suggestion(entry.key, keys[entry.section]) : did_you_mean(elsewhere)));
       }

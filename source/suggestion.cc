@@ -50,15 +50,7 @@ namespace Nodus
 
   std::vector<std::string> nearest(const std::string &name, const std::vector<std::string> &candidates)
   {
-    // keys of that very name in another place
-    std::vector<std::string> names;
-    for (const auto &candidate : candidates)
-      if (names.size() < 3 && candidate.size() > name.size() &&
-          candidate.compare(candidate.size() - name.size() - 1, std::string::npos, '/' + name) == 0)
-        names.push_back(candidate);
-    if (!names.empty())
-      return names;
-    names = nearest(name, candidates, 1, false, name.size() < 5 ? 1 : std::max<std::size_t>(2, name.size() / 3));
+    auto names = nearest(name, candidates, 1, false, name.size() < 5 ? 1 : std::max<std::size_t>(2, name.size() / 3));
     if (names.empty() && name.size() >= 4)
       names = nearest(name, candidates, 3, true, name.size() / 4);
     return names;
