@@ -53,12 +53,13 @@ namespace Nodus
         parameters.load_stepping.viscous_stabilisation, bodies, materials, dof_handler, *mapping);
     surfaces = std::make_unique<ContactSurfaces>(parameters.contact_pairs, bodies, dof_handler, *mapping);
     surfaces->set_fixed(boundary_conditions->homogeneous_constraints());
-    // rho_n = factor E/h: the stiffness of a layer one slave face deep; a softer one lets friction converge slowly
+    // rho_n = factor E/h: the stiffness of a layer one slave face deep, of the softer material
     std::vector<double> stiffness, augmentation;
     for (unsigned int p = 0; p < parameters.contact_pairs.size(); ++p)
     {
       const auto &pair = parameters.contact_pairs[p];
-      stiffness.push_back(materials[pair.slave.body - 1]->youngs_modulus());
+      stiffness.push_back(std::min(materials[pair.slave.body - 1]->youngs_modulus(),
+                                   materials[pair.master.body - 1]->youngs_modulus()));
       augmentation.push_back(pair.normal_augmentation_factor * stiffness[p] / surfaces->face_size(p));
     }
     status  = std::make_unique<Status>(parameters.contact_pairs, *surfaces, augmentation, stiffness);
