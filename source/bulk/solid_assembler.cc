@@ -342,8 +342,7 @@ namespace Nodus
       ++iterates;
       nodal_u_before = nodal_u;
     }
-    throw_everywhere<SolverFailure>(
-        failure, dof_handler.get_communicator(), SolverFailure::Kind::inverted_cell);
+    throw_everywhere<SolverFailure>(failure, dof_handler.get_communicator(), SolverFailure::Kind::inverted_cell);
   }
 
   SolidAssembler::SolidAssembler(const DoFHandler<dim>                        &dof_handler,

@@ -26,7 +26,8 @@ namespace Nodus
     r.reinit(b);
     const double norm_b = b.l2_norm();
     if (!std::isfinite(norm_b))
-      throw SolverFailure("Block solver: the right-hand side holds a value that is not finite.", SolverFailure::Kind::not_finite);
+      throw SolverFailure("Block solver: the right-hand side holds a value that is not finite.",
+                          SolverFailure::Kind::not_finite);
 
     Report report;
     if (norm_b > 0.)

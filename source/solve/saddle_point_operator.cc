@@ -130,7 +130,8 @@ namespace Nodus
     const double norms =
         bulk().norm_squared() + B_->NormFrobenius() + C_->NormFrobenius() + (C_uu_ ? C_uu_->NormFrobenius() : 0.);
     if (!std::isfinite(norms))
-      throw SolverFailure("Krylov solver: the matrix holds a value that is not finite.", SolverFailure::Kind::not_finite);
+      throw SolverFailure("Krylov solver: the matrix holds a value that is not finite.",
+                          SolverFailure::Kind::not_finite);
   }
 
   void SaddlePointOperator::equilibrate()

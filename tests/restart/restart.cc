@@ -91,12 +91,13 @@ namespace
     if (one)
     {
       check("  fields: the same to 1e-12", difference(continued, reference) <= 1e-12);
-      for (const std::string file :
-           {"contact.csv",
-            "reactions.csv",
-            "energy.csv",
-            "convergence.csv",
-            "bodies.pvd", "contact.pvd", "bodies_0008.vtu"})
+      for (const std::string file : {"contact.csv",
+                                     "reactions.csv",
+                                     "energy.csv",
+                                     "convergence.csv",
+                                     "bodies.pvd",
+                                     "contact.pvd",
+                                     "bodies_0008.vtu"})
         check("  " + file + ": the same text",
               !contents(whole, file).empty() && contents(whole, file) == contents(parts, file));
       return;
