@@ -40,7 +40,16 @@ namespace Nodus
   {
     if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 && !parameters.contact_pairs.empty())
       balance_contact(parameters.contact_pairs, *mapping, bodies);
+    set_up_mesh();
+    profile.set_ground(Phase::other);
+  }
+
+  /// All that is made for the mesh as it is; the state is that at rest.
+  void ContactProblem::Implementation::set_up_mesh()
+  {
+    geometry.reset();
     dof_handler.distribute_dofs(fe);
+    relevant.clear();
     dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
     boundary_conditions = std::make_unique<BoundaryConditions>(
         parameters.boundary_conditions, bodies, dof_handler, *mapping, parameters.load_stepping.interval_ends);
@@ -54,14 +63,11 @@ namespace Nodus
     surfaces = std::make_unique<ContactSurfaces>(parameters.contact_pairs, bodies, dof_handler, *mapping);
     surfaces->set_fixed(boundary_conditions->homogeneous_constraints());
     // rho_n = factor E/h: the stiffness of a layer one slave face deep, of the softer material
-    std::vector<double> stiffness, augmentation;
+    const std::vector<double> stiffness = pair_stiffness();
+    std::vector<double>       augmentation;
     for (unsigned int p = 0; p < parameters.contact_pairs.size(); ++p)
-    {
-      const auto &pair = parameters.contact_pairs[p];
-      stiffness.push_back(std::min(materials[pair.slave.body - 1]->youngs_modulus(),
-                                   materials[pair.master.body - 1]->youngs_modulus()));
-      augmentation.push_back(pair.normal_augmentation_factor * stiffness[p] / surfaces->face_size(p));
-    }
+      augmentation.push_back(parameters.contact_pairs[p].normal_augmentation_factor * stiffness[p] /
+                             surfaces->face_size(p));
     status  = std::make_unique<Status>(parameters.contact_pairs, *surfaces, augmentation, stiffness);
     contact = std::make_unique<ContactAssembler>(*surfaces, pairing, jump, weights, *status);
 
@@ -83,9 +89,34 @@ namespace Nodus
     }
     for (Vector *v : {&u_geometry, &u_before_geometry})
       v->reinit(layout.owned[0], communicator);
-    committed_site_force.resize(surfaces->n_sites());
+    committed_site_force.assign(surfaces->n_sites(), Vector3());
     gather_state();
-    profile.set_ground(Phase::other);
+  }
+
+  /// Young's modulus of the softer side of each pair.
+  std::vector<double> ContactProblem::Implementation::pair_stiffness() const
+  {
+    std::vector<double> stiffness;
+    for (const auto &pair : parameters.contact_pairs)
+      stiffness.push_back(std::min(materials[pair.slave.body - 1]->youngs_modulus(),
+                                   materials[pair.master.body - 1]->youngs_modulus()));
+    return stiffness;
+  }
+
+  /// What the solution on the mesh as it is needs beyond that.
+  void ContactProblem::Implementation::begin_on_mesh()
+  {
+    solid->make_sparsity(system.bulk);
+    linear_solver =
+        make_linear_solver(parameters.linear_solver, surfaces->layout(), OwnedNodes(dof_handler, *mapping).X);
+    linear_solver->set_profile(&profile);
+    direct_solver.reset();
+    if (!parameters.output.write_vtu)
+      return;
+    const VtuOutput::Series series = vtu ? vtu->series() : VtuOutput::Series();
+    vtu = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, *mapping, *solid);
+    if (!series.empty())
+      vtu->continue_from(series);
   }
 
   void ContactProblem::Implementation::update_results()
@@ -166,12 +197,9 @@ namespace Nodus
       if (detailed_profile)
         profile.watch_memory();
       summary();
-      solid->make_sparsity(system.bulk);
-      linear_solver =
-          make_linear_solver(parameters.linear_solver, surfaces->layout(), OwnedNodes(dof_handler, *mapping).X);
-      linear_solver->set_profile(&profile);
-      if (parameters.output.write_vtu)
-        vtu = std::make_unique<VtuOutput>(parameters.output.results_folder, bodies, dof_handler, *mapping, *solid);
+      if (!restart)
+        refine_near_contact();
+      begin_on_mesh();
       tables = std::make_unique<Tables>(parameters.output.results_folder, communicator);
       diagnosis.begin_run();
     }

@@ -116,6 +116,8 @@ namespace Nodus
     energies.stabilisation += sums[6];
     committed_applied = applied;
 
+    if (time == path.time()) // equilibrium on a new mesh, which stores another energy
+      return;
     Energies increment = energies;
     increment -= before;
     warn_of_energies(increment, creating);

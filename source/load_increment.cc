@@ -288,7 +288,7 @@ namespace Nodus
     committed_pairing         = pairing;
     committed_area            = weights.area();
     committed_stiffness_scale = stiffness_scale;
-    if (path.ends_interval())
+    if (path.ends_interval() && time > path.time())
     {
       const auto &constraints = boundary_conditions->homogeneous_constraints();
       for (const DoFIndex i : surfaces->layout().owned[0])

@@ -38,6 +38,16 @@ namespace Nodus
         console.remark(reason.str() + "; the increment is halved");
         continue;
       }
+      if (mesh_repetitions < parameters.adaptivity.repetitions)
+      {
+        if (adapt_mesh())
+        {
+          ++mesh_repetitions;
+          console.remark("the increment is repeated on the new mesh");
+          continue;
+        }
+      }
+      mesh_repetitions = 0;
       warn_of_lost_partners();
       report_stabilisation();
       commit();
@@ -51,6 +61,9 @@ namespace Nodus
       console.end_increment(counts, resultants, path.progress());
       if (callback)
         callback(increment, time);
+      const unsigned int every = parameters.adaptivity.interval;
+      if (every > 0 && increment % every == 0 && !path.finished() && adapt_mesh())
+        restore_equilibrium();
       const unsigned int interval = parameters.output.checkpoint_interval;
       if (interval > 0 && increment % interval == 0)
         write_checkpoint();

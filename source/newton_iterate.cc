@@ -79,7 +79,8 @@ namespace Nodus
       const double norm = std::hypot(component[0], component[1]);
       for (unsigned int i = 0; i < 2; ++i)
         solution.block(2)(2 * multiplier + i) = norm > 0. ? component[i] * Lambda.norm() / norm : 0.;
-      solution.block(1)(multiplier) = pairing[k].found ? state.lambda[k] * nodal_area[k] / weights.area()[k] : 0.;
+      const double ratio            = nodal_area.empty() ? 1. : nodal_area[k] / weights.area()[k]; // empty: new mesh
+      solution.block(1)(multiplier) = pairing[k].found ? state.lambda[k] * ratio : 0.;
     }
     nodal_area = weights.area();
     solution.block(1).compress(dealii::VectorOperation::insert);
@@ -129,7 +130,7 @@ namespace Nodus
 
   void ContactProblem::Implementation::update_slip_rates()
   {
-    if (!status->friction_varies())
+    if (!status->friction_varies() || time == path.time()) // equilibrium on a new mesh: the rates stay
       return;
     std::vector<double> rate(surfaces->n_sites(), 0.);
     for (unsigned int s = 0; s < rate.size(); ++s)

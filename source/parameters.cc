@@ -41,6 +41,10 @@ namespace Nodus
                                                               {LinearSolverParameters::Type::block, "block"},
                                                               {LinearSolverParameters::Type::condensed, "condensed"}};
 
+    const Names<AdaptivityParameters::Marking> marking_names = {
+        {AdaptivityParameters::Marking::fixed_fraction, "fixed fraction"},
+        {AdaptivityParameters::Marking::target_error, "target error"}};
+
     const Names<unsigned int> component_names = {{0, "x"}, {1, "y"}, {2, "z"}};
 
     /// Axes x, y, z as 0, 1, 2.
@@ -177,6 +181,15 @@ namespace Nodus
       prm.add_parameter("Translation", body.translation, "Shift after scaling and rotation [length].");
       prm.add_parameter(
           "Global refinement", body.global_refinement, "Times every cell of the body is split into eight [-].", count);
+      prm.add_parameter("Local refinement",
+                        body.local_refinement,
+                        "Times that cells are split after that where Refine where holds at their centres [-].",
+                        count);
+      prm.add_parameter("Refine where",
+                        body.refine_where,
+                        "Expression of x, y, z [length] that is not zero where cells are refined locally, e.g. "
+                        "x*x + y*y < 4 [-].",
+                        Patterns::Anything());
       add_choice(
           prm,
           "Volumetric treatment",
@@ -331,6 +344,66 @@ namespace Nodus
           not_negative);
     }
 
+    void add(ParameterHandler &prm, AdaptivityParameters &adaptivity)
+    {
+      const Patterns::Double fraction(0., 1.);
+      prm.add_parameter("Interval",
+                        adaptivity.interval,
+                        "Increments between two refinements of the mesh [-]; 0: the mesh stays as it is.",
+                        count);
+      prm.add_parameter("Initial cycles",
+                        adaptivity.initial_cycles,
+                        "Refinements before the first increment, of the cells on both sides of gaps up to Contact "
+                        "distance [-].",
+                        count);
+      prm.add_parameter("Contact distance",
+                        adaptivity.contact_distance,
+                        "Gap that is expected to close [length]; 0: the mean slave face size of the pair.",
+                        not_negative);
+      prm.add_parameter("Repetitions",
+                        adaptivity.repetitions,
+                        "Times that an increment is repeated on the refined mesh, until no cell is to be refined [-].",
+                        count);
+      prm.add_parameter("Bulk weight",
+                        adaptivity.bulk_weight,
+                        "Weight of the jumps of the stress between cells in the indicator of the error [-].",
+                        not_negative);
+      prm.add_parameter("Contact weight",
+                        adaptivity.contact_weight,
+                        "Weight of the contact terms in it: the jump between the contact traction and the stress below "
+                        "it, gaps and penetrations between the nodes, ends of the contact and of the stick zone [-].",
+                        not_negative);
+      add_choice(prm,
+                 "Marking",
+                 adaptivity.marking,
+                 marking_names,
+                 "fixed fraction: the cells with the largest errors that hold Refine fraction of the squared error are "
+                 "refined, those with the smallest that hold Coarsen fraction coarsened; target error: cells above "
+                 "their equal share of Target error are refined, those far below coarsened [-].");
+      prm.add_parameter("Refine fraction",
+                        adaptivity.refine_fraction,
+                        "Part of the squared error in the cells that are refined [-].",
+                        fraction);
+      prm.add_parameter("Coarsen fraction",
+                        adaptivity.coarsen_fraction,
+                        "Part of the squared error in the cells that are coarsened [-].",
+                        fraction);
+      prm.add_parameter("Target error",
+                        adaptivity.target_error,
+                        "Estimated error of the stress relative to the stress, in the norm of the energy [-].",
+                        positive);
+      prm.add_parameter(
+          "Maximum level", adaptivity.maximum_level, "Refinements of a cell beyond those of its body [-].", count);
+      prm.add_parameter("Maximum unknowns",
+                        adaptivity.maximum_unknowns,
+                        "Displacement degrees of freedom that refinement stops at [-].",
+                        positive);
+      prm.add_parameter(
+          "Slave at least as fine",
+          adaptivity.slave_at_least_as_fine,
+          "Whether slave faces are refined until they are no larger than the master faces they face [-].");
+    }
+
     void add(ParameterHandler &prm, OutputParameters &output)
     {
       prm.add_parameter("Results folder",
@@ -392,6 +465,7 @@ namespace Nodus
     add_subsection(prm, "Newton", newton);
     add_subsection(prm, "Linear solver", linear_solver);
     add_subsection(prm, "Load stepping", load_stepping);
+    add_subsection(prm, "Adaptivity", adaptivity);
     add_subsection(prm, "Output", output);
   }
 

@@ -147,6 +147,11 @@ namespace Nodus
       section.require(body.rotation_angle == 0. || body.rotation_axis.norm() > 0.,
                       "Rotation axis",
                       "must not be zero when there is a Rotation angle; give a direction such as 0, 0, 1");
+      section.require((body.local_refinement > 0) == !body.refine_where.empty(),
+                      "Refine where",
+                      "and Local refinement go together; give both or none");
+      if (!body.refine_where.empty())
+        check_expression(section, "Refine where", body.refine_where, "x,y,z");
       check({section.file, section.name + "/Material"}, body.material);
     }
 
@@ -321,6 +326,16 @@ namespace Nodus
                       "is larger than Maximum increment; lower it");
     }
 
+    void check(const Section &section, const AdaptivityParameters &adaptivity)
+    {
+      section.require(adaptivity.refine_fraction + adaptivity.coarsen_fraction <= 1.,
+                      "Coarsen fraction",
+                      "and Refine fraction together are more than 1; no cell can be in both");
+      section.require(adaptivity.bulk_weight + adaptivity.contact_weight > 0. || adaptivity.interval == 0,
+                      "Bulk weight",
+                      "and Contact weight are both 0: there is no indicator; give one of them");
+    }
+
     template <typename Struct>
     void check_names(const ParameterFile &file, const std::string &subsection, const std::vector<Struct> &all)
     {
@@ -363,5 +378,6 @@ namespace Nodus
 
     Nodus::check({file, "Linear solver"}, linear_solver);
     Nodus::check({file, "Load stepping"}, load_stepping);
+    Nodus::check({file, "Adaptivity"}, adaptivity);
   }
 } // namespace Nodus

@@ -10,6 +10,7 @@
 #include <boost/serialization/map.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <map>
@@ -79,17 +80,17 @@ namespace Nodus
       return signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "signal " + std::to_string(signal);
     }
 
-    /// State of a contact site in a checkpoint: its Status::Record and the force on the slave.
     constexpr unsigned int n_status = std::tuple_size<Status::Record>::value, n_site = n_status + dim;
-    using SiteState = std::array<double, n_site>;
 
-    /// State of a slave node: that of the site, lambda, Lambda, the area that they refer to and the two tangents that
-    /// Lambda refers to. It travels as vectors like the displacement, three numbers in each, zeros at the end.
-    constexpr unsigned int n_node_vectors = (n_site + 4 + 2 * dim + dim - 1) / dim;
+    /// State of a slave node: that of the site, lambda, Lambda as a vector in space, the area that they refer to and
+    /// the two tangents of the slip. It travels as vectors like the displacement, three numbers in each, zeros at the
+    /// end.
+    constexpr unsigned int n_node_vectors = (n_site + 5 + 2 * dim + dim - 1) / dim;
+    /// Times that a mesh is refined at most on the way to that of a checkpoint.
+    constexpr unsigned int largest_level_change = 30;
     /// Vectors of all nodes: displacement, reactions to be released, applied forces.
     constexpr unsigned int n_displacement_vectors = 3;
     using NodeState                               = std::array<double, dim * n_node_vectors>;
-    using NodeVectors                             = std::array<Vector, n_node_vectors>;
 
     SiteState site_state(const Status::Record &record, const Vector3 &force)
     {
@@ -146,6 +147,137 @@ namespace Nodus
     }
   } // namespace
 
+  /// Of the slave nodes; those of the integration point scheme have the mean of the points around them. Right at own
+  /// nodes. Collective.
+  std::vector<SiteState> ContactProblem::Implementation::node_states() const
+  {
+    std::vector<SiteState> states(surfaces->slave_nodes().size(), SiteState{});
+    std::vector<double>    sums((n_site + 1) * states.size(), 0.);
+    const unsigned int     rank = dealii::Utilities::MPI::this_mpi_process(communicator);
+    for (const ContactPoint &point : weights.points())
+      if (point.site != dealii::numbers::invalid_unsigned_int && point.owner == rank)
+      {
+        const SiteState here = site_state(status->kept(point.site), committed_site_force[point.site]);
+        for (unsigned int a = 0; a < point.slaves.size(); ++a)
+        {
+          double *const sum  = sums.data() + (n_site + 1) * point.slaves[a];
+          const double  part = point.weight * std::abs(point.shape[a]);
+          for (unsigned int i = 0; i < n_site; ++i)
+            sum[i] += part * here[i];
+          sum[n_site] += part;
+        }
+      }
+    surfaces->slave_exchange().sum(sums, n_site + 1);
+    for (unsigned int k = 0; k < states.size(); ++k)
+      if (surfaces->has_status(k))
+        states[k] = site_state(status->kept(k), committed_site_force[k]);
+      else if (const double *const sum = sums.data() + (n_site + 1) * k; sum[n_site] > 0.)
+        for (unsigned int i = 0; i < n_site; ++i)
+          states[k][i] = sum[i] / sum[n_site];
+    return states;
+  }
+
+  /// The states of integration points on a new mesh, from those of the slave nodes as nodal_state() has them.
+  std::vector<SiteState> ContactProblem::Implementation::interpolated_sites(const std::vector<Vector> &vectors) const
+  {
+    std::vector<SiteState> sites(surfaces->n_sites(), SiteState{});
+    for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
+      for (unsigned int i = 0; i < n_site; ++i)
+        sites[k][i] = vectors[n_displacement_vectors + i / dim](surfaces->nodes()[k].dofs[i % dim]);
+    std::vector<SiteState> nodes(sites.begin(), sites.begin() + surfaces->slave_nodes().size());
+    surfaces->slave_exchange().update(nodes);
+    for (unsigned int s = nodes.size(); s < sites.size(); ++s)
+    {
+      const SlavePoint  &point = surfaces->point(s);
+      const SurfaceFace &face  = surfaces->slave_faces(point.pair)[point.face];
+      const auto         shape = face.slave_values(FaceShape(surfaces->degree(), point.xi, point.eta).value);
+      for (unsigned int a = 0; a < face.slaves.size(); ++a)
+        for (unsigned int i = 0; i < n_site; ++i)
+          sites[s][i] += shape[a] * nodes[face.slaves[a]][i];
+    }
+    return sites;
+  }
+
+  /// The committed state as vectors like the displacement, which is the first of them: what a checkpoint and a new mesh
+  /// take over. States of integration points are not among it.
+  std::vector<Vector> ContactProblem::Implementation::nodal_state() const
+  {
+    std::vector<Vector> vectors = {committed.block(0), reaction, committed_applied};
+    for (unsigned int n = 0; n < n_node_vectors; ++n)
+      vectors.emplace_back(surfaces->layout().owned[0], communicator);
+    const std::vector<SiteState> sites = node_states();
+    for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
+    {
+      NodeState        state{};
+      const SiteState &site       = sites[k];
+      const DoFIndex   multiplier = surfaces->multiplier(k);
+      double          *value      = std::copy(site.begin(), site.end(), state.begin());
+      *value++                    = committed.block(1)(multiplier);
+      Vector3 Lambda;
+      for (unsigned int i = 0; i < 2; ++i)
+        Lambda += committed.block(2)(2 * multiplier + i) * committed_pairing[k].tangent[i];
+      value    = std::copy(Lambda.begin_raw(), Lambda.end_raw(), value);
+      *value++ = committed_area.empty() ? 0. : committed_area[k];
+      for (const Vector3 &tangent : committed_pairing[k].tangent)
+        value = std::copy(tangent.begin_raw(), tangent.end_raw(), value);
+      for (unsigned int i = 0; i < state.size(); ++i)
+        vectors[n_displacement_vectors + i / dim](surfaces->nodes()[k].dofs[i % dim]) = state[i];
+    }
+    for (unsigned int n = 0; n < n_node_vectors; ++n)
+      vectors[n_displacement_vectors + n].compress(dealii::VectorOperation::insert);
+    return vectors;
+  }
+
+  /// Takes back what nodal_state() gave, and the states of integration points among @p sites (number of all sites).
+  void ContactProblem::Implementation::set_nodal_state(const std::vector<Vector> &vectors, std::vector<SiteState> sites)
+  {
+    committed.block(0) = vectors[0];
+    reaction           = vectors[1];
+    committed_applied  = vectors[2];
+    std::vector<std::array<Vector3, 2>> tangents(surfaces->n_sites());
+    committed_area.assign(surfaces->slave_nodes().size(), 0.);
+    for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
+    {
+      NodeState state;
+      for (unsigned int i = 0; i < state.size(); ++i)
+        state[i] = vectors[n_displacement_vectors + i / dim](surfaces->nodes()[k].dofs[i % dim]);
+      std::copy_n(state.begin(), n_site, sites[k].begin());
+      const double  *value           = state.data() + n_site;
+      const DoFIndex multiplier      = surfaces->multiplier(k);
+      committed.block(1)(multiplier) = *value++;
+      Vector3 Lambda;
+      for (unsigned int c = 0; c < dim; ++c)
+        Lambda[c] = *value++;
+      committed_area[k] = *value++;
+      for (Vector3 &tangent : tangents[k])
+        for (unsigned int c = 0; c < dim; ++c)
+          tangent[c] = *value++;
+      // on a new mesh they lie between those of other nodes
+      for (unsigned int i = 0; i < 2; ++i)
+      {
+        if (i == 1)
+          tangents[k][1] -= (tangents[k][1] * tangents[k][0]) * tangents[k][0];
+        if (const double norm = tangents[k][i].norm(); norm > 0.)
+          tangents[k][i] /= norm;
+        committed.block(2)(2 * multiplier + i) = Lambda * tangents[k][i];
+      }
+    }
+    for (unsigned int b = 1; b < 3; ++b)
+      committed.block(b).compress(dealii::VectorOperation::insert);
+    const double largest =
+        committed_area.empty() ? 0. : *std::max_element(committed_area.begin(), committed_area.end());
+    if (dealii::Utilities::MPI::max(largest, communicator) == 0.)
+      committed_area.clear(); // pressures on a mesh that has not seen equilibrium
+    committed_pairing.set_tangents(tangents);
+    std::vector<Status::Record> records(sites.size());
+    for (unsigned int s = 0; s < sites.size(); ++s)
+    {
+      std::copy_n(sites[s].begin(), n_status, records[s].begin());
+      std::copy_n(sites[s].begin() + n_status, dim, committed_site_force[s].begin_raw());
+    }
+    status->restore(records);
+  }
+
   void ContactProblem::Implementation::write_checkpoint()
   {
     const auto timer = profile.time(Phase::output);
@@ -153,37 +285,12 @@ namespace Nodus
     if (vtu)
       common.series = vtu->series();
 
-    NodeVectors owned;
-    for (Vector &v : owned)
-      v.reinit(surfaces->layout().owned[0], communicator);
-    for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
+    const std::vector<Vector> owned = nodal_state();
+    std::vector<Vector>       relevant_vectors(owned.size());
+    for (unsigned int n = 0; n < owned.size(); ++n)
     {
-      NodeState       state{};
-      const SiteState site       = site_state(status->kept(k), committed_site_force[k]);
-      const DoFIndex  multiplier = surfaces->multiplier(k);
-      double         *value      = std::copy(site.begin(), site.end(), state.begin());
-      *value++                   = committed.block(1)(multiplier);
-      for (unsigned int i = 0; i < 2; ++i)
-        *value++ = committed.block(2)(2 * multiplier + i);
-      *value++ = committed_area[k];
-      for (const Vector3 &tangent : committed_pairing[k].tangent)
-        value = std::copy(tangent.begin_raw(), tangent.end_raw(), value);
-      for (unsigned int i = 0; i < state.size(); ++i)
-        owned[i / dim](surfaces->nodes()[k].dofs[i % dim]) = state[i];
-    }
-    std::array<Vector, n_displacement_vectors + n_node_vectors> relevant_vectors;
-    const auto                                                  with_ghosts = [&](const Vector &v, Vector &relevant_v)
-    {
-      relevant_v.reinit(surfaces->layout().owned[0], relevant, communicator);
-      relevant_v = v;
-    };
-    with_ghosts(committed.block(0), relevant_vectors[0]);
-    with_ghosts(reaction, relevant_vectors[1]);
-    with_ghosts(committed_applied, relevant_vectors[2]);
-    for (unsigned int n = 0; n < n_node_vectors; ++n)
-    {
-      owned[n].compress(dealii::VectorOperation::insert);
-      with_ghosts(owned[n], relevant_vectors[n_displacement_vectors + n]);
+      relevant_vectors[n].reinit(surfaces->layout().owned[0], relevant, communicator);
+      relevant_vectors[n] = owned[n];
     }
 
     Checkpoints::Piece               piece;
@@ -245,12 +352,51 @@ namespace Nodus
     if (vtu)
       vtu->continue_from(common.series);
 
+    match_mesh(found->pieces);
     read_pieces(found->pieces);
     paired_before = true;
     roll_back();
     std::ostringstream text;
     text << "Continues after increment " << found->increment << ", t = " << path.time();
     console.line(text.str());
+  }
+
+  /// Refines and coarsens the mesh until its cells are those of the checkpoint.
+  void ContactProblem::Implementation::match_mesh(const std::vector<std::filesystem::path> &pieces)
+  {
+    std::set<Checkpoints::Piece::CellKey> wanted;
+    for (const auto &file : pieces)
+      for (const auto &cell : Checkpoints::read(file).cells)
+        wanted.insert(cell.first);
+    auto &triangulation = bodies.triangulation();
+    bool  changed       = false;
+    for (unsigned int round = 0; round < largest_level_change; ++round)
+    {
+      unsigned int changes = 0;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned() && wanted.count(cell->id().to_binary<dim>()) == 0)
+        {
+          bool finer = false;
+          for (auto coarser = Bodies::Triangulation::cell_iterator(cell); coarser->level() > 0 && !finer;)
+          {
+            coarser = coarser->parent();
+            finer   = wanted.count(coarser->id().to_binary<dim>()) == 1;
+          }
+          if (finer)
+            cell->set_coarsen_flag();
+          else
+            cell->set_refine_flag();
+          ++changes;
+        }
+      if (dealii::Utilities::MPI::max(changes, communicator) == 0)
+        break;
+      triangulation.execute_coarsening_and_refinement();
+      changed = true;
+    }
+    if (!changed)
+      return;
+    set_up_mesh();
+    begin_on_mesh();
   }
 
   /// The committed state of this rank's cells, from whatever ranks wrote them.
@@ -266,12 +412,8 @@ namespace Nodus
     std::vector<std::vector<double>> histories(cells.size());
     const auto                       faces = faces_with_points(*surfaces, dof_handler);
 
-    NodeVectors node_vectors;
-    for (Vector &v : node_vectors)
-      v.reinit(surfaces->layout().owned[0], communicator);
-    std::vector<Vector *> vectors = {&committed.block(0), &reaction, &committed_applied};
-    for (Vector &v : node_vectors)
-      vectors.push_back(&v);
+    std::vector<Vector> vectors(n_displacement_vectors + n_node_vectors,
+                                Vector(surfaces->layout().owned[0], communicator));
 
     std::vector<SiteState> sites(surfaces->n_sites());
     std::vector<DoFIndex>  dofs(fe.n_dofs_per_cell());
@@ -286,7 +428,7 @@ namespace Nodus
           cell->second.first->get_dof_indices(dofs);
           for (unsigned int i = 0; i < values.size(); ++i)
             if (const DoFIndex dof = dofs[i % dofs.size()]; surfaces->layout().owned[0].is_element(dof))
-              (*vectors[i / dofs.size()])(dof) = values[i];
+              vectors[i / dofs.size()](dof) = values[i];
         }
       for (const auto &[key, values] : piece.histories)
         if (const auto cell = cells.find(key); cell != cells.end())
@@ -303,36 +445,9 @@ namespace Nodus
                         communicator);
     solid->set_history(histories);
 
-    std::vector<std::array<Vector3, 2>> tangents(surfaces->n_sites());
-    committed_area.assign(surfaces->slave_nodes().size(), 0.);
-    for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
-    {
-      NodeState state;
-      for (unsigned int i = 0; i < state.size(); ++i)
-        state[i] = node_vectors[i / dim](surfaces->nodes()[k].dofs[i % dim]);
-      std::copy_n(state.begin(), n_site, sites[k].begin());
-      const double  *value           = state.data() + n_site;
-      const DoFIndex multiplier      = surfaces->multiplier(k);
-      committed.block(1)(multiplier) = *value++;
-      for (unsigned int i = 0; i < 2; ++i)
-        committed.block(2)(2 * multiplier + i) = *value++;
-      committed_area[k] = *value++;
-      for (Vector3 &tangent : tangents[k])
-        for (unsigned int c = 0; c < dim; ++c)
-          tangent[c] = *value++;
-    }
-    for (unsigned int b = 0; b < 3; ++b)
-      committed.block(b).compress(dealii::VectorOperation::insert);
-    reaction.compress(dealii::VectorOperation::insert);
-    committed_applied.compress(dealii::VectorOperation::insert);
-    committed_pairing.set_tangents(tangents);
-    std::vector<Status::Record> records(sites.size());
-    for (unsigned int s = 0; s < sites.size(); ++s)
-    {
-      std::copy_n(sites[s].begin(), n_status, records[s].begin());
-      std::copy_n(sites[s].begin() + n_status, dim, committed_site_force[s].begin_raw());
-    }
-    status->restore(records);
+    for (Vector &v : vectors)
+      v.compress(dealii::VectorOperation::insert);
+    set_nodal_state(vectors, std::move(sites));
   }
 
   /// Once per Newton iteration: writes a checkpoint of what converged last where a signal asks for it. @throws

@@ -9,6 +9,7 @@
 #include <nodus/contact/rigid_motions.h>
 #include <nodus/contact_problem.h>
 #include <nodus/mesh/bodies.h>
+#include <nodus/mesh/refinement.h>
 #include <nodus/output/checkpoint.h>
 #include <nodus/output/console.h>
 #include <nodus/output/diagnosis.h>
@@ -39,9 +40,13 @@ namespace Nodus
     std::string names() const;
   };
 
+  /// State of a contact site in a checkpoint and on its way to a new mesh: its Status::Record and the force on the
+  /// slave.
+  using SiteState = std::array<double, std::tuple_size<Status::Record>::value + dim>;
+
   /// Everything a run owns. contact_problem.cc builds it and reports, load_path.cc goes from increment to increment,
   /// load_increment.cc holds the three nested loops, newton_iterate.cc what Newton sees, restart.cc the checkpoints,
-  /// failed_state.cc what is kept of an increment that fails.
+  /// failed_state.cc what is kept of an increment that fails, adapt.cc changes the mesh.
   struct ContactProblem::Implementation : public NewtonProblem
   {
     Implementation(const Parameters &parameters, MPI_Comm communicator, std::ostream &log);
@@ -97,14 +102,28 @@ namespace Nodus
     void                     find_repeated_constraint(FailureEvidence &evidence) const;
     void                     write_failed_state(const std::string &name, const std::vector<float> &det_F);
     [[noreturn]] void        give_up(const std::string &reason, const std::string &hint, bool converged_before);
+    void                     set_up_mesh();
+    void                     begin_on_mesh();
+    RefinementIndicator      estimate_error();
+    bool                     refine(const RefinementIndicator &indicator, bool keep_state);
+    void                     refine_near_contact();
+    bool                     adapt_mesh();
+    void                     restore_equilibrium();
+    std::vector<SiteState>   node_states() const;
+    std::vector<SiteState>   interpolated_sites(const std::vector<Vector> &vectors) const;
+    std::vector<Vector>      nodal_state() const;
     void                     write_checkpoint();
     void                     read_checkpoint();
+    void                     match_mesh(const std::vector<std::filesystem::path> &pieces);
     void                     read_pieces(const std::vector<std::filesystem::path> &pieces);
     void                     heed_signals();
     void                     write(unsigned int increment, bool last);
     void                     update_results();
     void                     summary();
     std::string              report_profile(bool converged);
+    void                     set_nodal_state(const std::vector<Vector> &vectors, std::vector<SiteState> sites);
+
+    std::vector<double> pair_stiffness() const;
 
     const Parameters parameters;
     MPI_Comm         communicator;
@@ -157,7 +176,8 @@ namespace Nodus
     DoFIndex        null_pivot  = dealii::numbers::invalid_dof_index; ///< flat index, of a singular system
     Vector          u_geometry, u_before_geometry; ///< displacements of this and the previous pairing
     std::string     first_changed, cycling;        ///< sites of the last change of statuses, and of the last cycle
-    unsigned int    geometry_cycles = 0;           ///< with period 2, in the geometry loop at hand
+    unsigned int    mesh_repetitions = 0;          ///< of the increment at hand on a finer mesh
+    unsigned int    geometry_cycles  = 0;          ///< with period 2, in the geometry loop at hand
     bool            paired_before = false, newton_starts = true;
     bool            motions_unknown   = false; ///< of the bodies, as the first increment of an interval begins
     double          prescribed_before = 0.;    ///< still to be met at the last assembly, relative

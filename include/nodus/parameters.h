@@ -74,7 +74,9 @@ namespace Nodus
     Vector3                   rotation_axis; ///< with rotation_angle in degrees; about the origin
     double                    rotation_angle = 0.;
     Vector3                   translation; ///< applied after scale and rotation [length]
-    unsigned int              global_refinement    = 0;
+    unsigned int              global_refinement = 0;
+    unsigned int              local_refinement  = 0; ///< more of it ...
+    std::string               refine_where;          ///< ... where this muParser predicate holds at cell centres
     VolumetricTreatment       volumetric_treatment = VolumetricTreatment::standard;
     MaterialParameters        material;
   };
@@ -248,6 +250,28 @@ namespace Nodus
     double       viscous_stabilisation = 0.; ///< [-], see ViscousStabilisation; 0: none
   };
 
+  struct AdaptivityParameters
+  {
+    enum class Marking
+    {
+      fixed_fraction,
+      target_error
+    };
+    unsigned int interval               = 0;  ///< refine after every so many increments; 0: never
+    unsigned int initial_cycles         = 0;  ///< before the first increment, near expected contact
+    double       contact_distance       = 0.; ///< gaps up to here are expected to close [length]; 0: a slave face
+    unsigned int repetitions            = 0;  ///< of an increment, until nothing is to be refined
+    double       bulk_weight            = 1.; ///< of the jumps of stress between cells
+    double       contact_weight         = 1.; ///< of the contact indicator
+    Marking      marking                = Marking::fixed_fraction;
+    double       refine_fraction        = 0.3; ///< of the squared error in the cells to be refined (fixed fraction)
+    double       coarsen_fraction       = 0.03;
+    double       target_error           = 0.05; ///< relative, in energy (target error)
+    unsigned int maximum_level          = 2;    ///< refinements beyond those of the body
+    double       maximum_unknowns       = 1e6;  ///< displacement degrees of freedom
+    bool         slave_at_least_as_fine = true;
+  };
+
   struct OutputParameters
   {
     std::string  results_folder; ///< empty = results/<name of the .prm file>, in the working folder
@@ -270,6 +294,7 @@ namespace Nodus
     NewtonParameters                         newton;
     LinearSolverParameters                   linear_solver;
     LoadSteppingParameters                   load_stepping;
+    AdaptivityParameters                     adaptivity;
     OutputParameters                         output;
 
     /// Strict parse of @p file after applying @p overrides ("Section/Key=value"). Throws InputError.

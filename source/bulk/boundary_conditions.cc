@@ -118,6 +118,7 @@ namespace Nodus
       , dof_handler_(dof_handler)
       , mapping_(mapping)
       , parameters_(parameters)
+      , hanging_(dof_handler)
   {
     for (unsigned int n = 0; n < parameters_.size(); ++n)
       functions_.push_back(parse(parameters_[n], label(n)));
@@ -294,7 +295,7 @@ namespace Nodus
   void BoundaryConditions::make_constraints()
   {
     lines_.reinit(DoFTools::extract_locally_relevant_dofs(dof_handler_));
-    DoFTools::make_hanging_node_constraints(dof_handler_, lines_);
+    hanging_.add_to(lines_);
 
     // a hanging node of a region follows its masters, which belong to the region as well
     std::vector<Prescribed> not_hanging;

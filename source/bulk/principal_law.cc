@@ -237,4 +237,18 @@ namespace Nodus
     update(F, before, after, S, nullptr);
     return stored_energy(F, after);
   }
+
+  /// Plastic flow keeps the volume, and the equivalent plastic strain is not negative.
+  void PrincipalLaw::correct_state(double *const state) const
+  {
+    if (n_state() == 0)
+      return;
+    SymmetricTensor<2, dim> C_p_inverse;
+    for (unsigned int r = 0; r < n_pairs; ++r)
+      C_p_inverse[pair_first[r]][pair_second[r]] = state[r];
+    const double scale = 1. / std::cbrt(determinant(C_p_inverse));
+    for (unsigned int r = 0; r < n_pairs; ++r)
+      state[r] *= scale;
+    state[n_pairs] = std::max(state[n_pairs], 0.);
+  }
 } // namespace Nodus

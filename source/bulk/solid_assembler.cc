@@ -24,6 +24,7 @@ namespace Nodus
       , materials(materials)
       , loads(dof_handler, mapping, materials, body_loads)
       , n_nodes(dof_handler.get_fe().n_dofs_per_cell() / dim)
+      , constrained(dof_handler)
   {
     const auto                                                   &fe = dof_handler.get_fe();
     std::map<VolumetricTreatment, std::shared_ptr<ElementKernel>> kernel_of;
@@ -46,7 +47,7 @@ namespace Nodus
     cell_tangent.reinit(fe.n_dofs_per_cell(), fe.n_dofs_per_cell());
 
     const IndexSet       &owned = dof_handler.locally_owned_dofs();
-    std::vector<DoFIndex> cell_dofs(fe.n_dofs_per_cell()), global_nodes, ghosts;
+    std::vector<DoFIndex> cell_dofs(fe.n_dofs_per_cell()), global_nodes, ghosts, free_nodes;
     const std::size_t     n_cells = dof_handler.get_triangulation().n_active_cells();
     // the largest arrays: growing them would take twice their memory
     number_of.resize(n_cells, numbers::invalid_unsigned_int);
@@ -58,7 +59,8 @@ namespace Nodus
         continue;
       cell->get_dof_indices(cell_dofs);
       if (!cell->is_locally_owned() &&
-          std::none_of(cell_dofs.begin(), cell_dofs.end(), [&](const DoFIndex i) { return owned.is_element(i); }))
+          (constrained.contains(cell) ||
+           std::none_of(cell_dofs.begin(), cell_dofs.end(), [&](const DoFIndex i) { return owned.is_element(i); })))
         continue;
       for (unsigned int a = 0; a < n_nodes; ++a)
       {
@@ -70,8 +72,8 @@ namespace Nodus
         if (!owned.is_element(first))
           ghosts.push_back(first / dim);
       }
-      for (const auto face : cell->face_indices())
-        AssertThrow(cell->at_boundary(face) || !cell->neighbor_is_coarser(face), ExcNotImplemented());
+      if (constrained.contains(cell))
+        constrained.add(cells.size(), {global_nodes.end() - n_nodes, global_nodes.end()}, free_nodes);
       if (batches.empty() || batches.back().size == n_lanes || cells.back().body != cell->material_id())
       {
         batches.push_back({static_cast<unsigned int>(cells.size()), 0, committed.size()});
@@ -95,13 +97,17 @@ namespace Nodus
       number_of[cell->active_cell_index()] = cells.size() - 1;
       loads.add_cell(cell);
     }
-    nodes = std::make_shared<NodeMap>(owned, std::move(ghosts), dof_handler.get_communicator());
+    for (const DoFIndex node : free_nodes)
+      if (!owned.is_element(dim * node))
+        ghosts.push_back(node);
+    const auto own_nodes = std::make_shared<NodeMap>(owned, std::move(ghosts), dof_handler.get_communicator());
+    for (unsigned int i = 0; i < own_nodes->size(); ++i)
+      for (unsigned int c = 0; c < dim; ++c)
+        dofs.push_back(dim * own_nodes->global(i) + c);
+    nodes = constrained.publish(own_nodes);
     cell_nodes.reserve(global_nodes.size());
     for (const DoFIndex node : global_nodes)
       cell_nodes.push_back(nodes->local(node));
-    for (unsigned int i = 0; i < nodes->size(); ++i)
-      for (unsigned int c = 0; c < dim; ++c)
-        dofs.push_back(dim * nodes->global(i) + c);
     for (auto *v : {&nodal_u, &nodal_u_before, &nodal_internal, &nodal_external, &nodal_rhs, &prescribed})
       v->resize(dofs.size());
     is_prescribed.resize(dofs.size());
@@ -131,13 +137,27 @@ namespace Nodus
 
   void SolidAssembler::Scratch::make_positions(NodeMatrix &tangent)
   {
-    tangent.reinit(nodes, cell_nodes, n_nodes);
+    std::vector<unsigned int> group_nodes;
+    std::vector<std::size_t>  group_end;
+    group_nodes.reserve(cell_nodes.size());
+    group_end.reserve(cells.size());
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      if (!is_constrained(c))
+      {
+        group_nodes.insert(group_nodes.end(), cell_nodes.begin() + c * n_nodes, cell_nodes.begin() + (c + 1) * n_nodes);
+        group_end.push_back(group_nodes.size());
+      }
+    constrained.add_groups(group_nodes, group_end);
+    tangent.reinit(nodes, group_nodes, group_end);
+    constrained.find_positions(tangent);
     positions.clear();
     positions.reserve(cells.size() * n_nodes * (n_nodes + 1) / 2);
     for (unsigned int c = 0; c < cells.size(); ++c)
       for (unsigned int a = 0; a < n_nodes; ++a)
         for (unsigned int b = a; b < n_nodes; ++b)
-          positions.push_back(tangent.position(cell_nodes[c * n_nodes + a], cell_nodes[c * n_nodes + b]));
+          positions.push_back(is_constrained(c)
+                                  ? NodeMatrix::Position()
+                                  : tangent.position(cell_nodes[c * n_nodes + a], cell_nodes[c * n_nodes + b]));
   }
 
   inline double &SolidAssembler::Scratch::entry(
@@ -170,7 +190,8 @@ namespace Nodus
     for (unsigned int i = 0; i < dim * n_nodes; ++i)
     {
       batch_force[i][lane] += cell_internal(i);
-      nodal_external[dim * node[i / dim] + i % dim] += cell_external(i);
+      if (!is_constrained(cell))
+        nodal_external[dim * node[i / dim] + i % dim] += cell_external(i);
     }
     if (with_tangent)
       for (unsigned int a = 0; a < n_nodes; ++a)
@@ -211,6 +232,25 @@ namespace Nodus
           }
         entry(a, i, a, i, lane) = diagonal;
       }
+  }
+
+  void SolidAssembler::Scratch::add_constrained(const unsigned int cell, const unsigned int lane, NodeMatrix *tangent)
+  {
+    for (unsigned int part = 0; part < 2; ++part)
+      cell_forces[part].assign(dim * n_nodes, 0.);
+    for (unsigned int i = 0; i < dim * n_nodes; ++i)
+      cell_forces[0][i] = batch_force[i][lane];
+    if (loads.act_on(cell))
+      std::copy(cell_external.begin(), cell_external.end(), cell_forces[1].begin());
+    constrained.add(constrained.index(cell),
+                    cell_forces[0],
+                    cell_forces[1],
+                    is_prescribed,
+                    prescribed,
+                    [&](const unsigned int a, const unsigned int i, const unsigned int b, const unsigned int k)
+                    { return entry(a, i, b, k, lane); },
+                    tangent,
+                    {nodal_internal, nodal_external, nodal_rhs});
   }
 
   void SolidAssembler::Scratch::scatter(const unsigned int cell, const unsigned int lane, NodeMatrix &tangent) const
@@ -320,6 +360,11 @@ namespace Nodus
         const unsigned int *const node = cell_nodes.data() + c * n_nodes;
         if (loads.act_on(c))
           add_loads(c, v, tangent);
+        if (is_constrained(c))
+        {
+          add_constrained(c, v, tangent);
+          continue;
+        }
         for (unsigned int i = 0; i < dim * n_nodes; ++i)
           nodal_internal[dim * node[i / dim] + i % dim] += batch_force[i][v];
         if (!tangent)
@@ -328,6 +373,7 @@ namespace Nodus
         scatter(c, v, *tangent);
       }
     }
+    constrained.exchange(!failure.empty(), tangent, {nodal_internal, nodal_external, nodal_rhs});
     for (unsigned int i = 0; i < dofs.size(); ++i)
       nodal_rhs[i] = is_prescribed[i] ? 0. : nodal_rhs[i] + nodal_external[i] - nodal_internal[i];
 

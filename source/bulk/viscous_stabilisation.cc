@@ -1,6 +1,8 @@
 #include <nodus/bulk/viscous_stabilisation.h>
+#include <nodus/mesh/hanging_nodes.h>
 
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/trilinos_vector.h>
 
@@ -25,7 +27,12 @@ namespace Nodus
     const auto           &fe = dof_handler.get_fe();
     dealii::FEValues<dim> values(
         mapping, fe, dealii::QGauss<dim>(fe.degree + 1), dealii::update_values | dealii::update_JxW_values);
-    Vector                 sum(owned, dof_handler.get_communicator());
+    Vector           sum(owned, dof_handler.get_communicator());
+    dealii::IndexSet relevant;
+    dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+    dealii::AffineConstraints<double> hanging_nodes(relevant);
+    HangingNodes(dof_handler).add_to(hanging_nodes);
+    hanging_nodes.close();
     std::vector<DoFIndex>  dofs(fe.n_dofs_per_cell());
     dealii::Vector<double> part(fe.n_dofs_per_cell());
     for (const auto &cell : dof_handler.active_cell_iterators())
@@ -37,7 +44,7 @@ namespace Nodus
         for (unsigned int i = 0; i < dofs.size(); ++i)
           for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
             part(i) += stiffness[cell->material_id()] * values.shape_value(i, q) * values.JxW(q);
-        sum.add(dofs, part);
+        hanging_nodes.distribute_local_to_global(part, dofs, sum);
       }
     sum.compress(dealii::VectorOperation::add);
     for (const DoFIndex i : owned)
@@ -49,6 +56,8 @@ namespace Nodus
                                            const double interval_begin,
                                            const double interval_end)
   {
+    if (end == begin) // equilibrium on a new mesh: as in the increment before
+      return;
     // the last increment ends at the end of the interval up to round-off
     const double rest = (interval_end - end) / (interval_end - interval_begin);
     rate_ = resistance_.empty() || rest < 1e-12 ? 0. : rest * (interval_end - interval_begin) / (end - begin);

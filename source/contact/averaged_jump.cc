@@ -26,18 +26,19 @@ namespace Nodus
     /// Entries of the slave part below this are round-off of the biorthogonality.
     constexpr double smallest_entry = 1e-13;
 
-    /// What a slave face adds to the rows of its nodes, before the division by the area.
+    /// What a slave face adds to the rows of its slave nodes, before the division by the area.
     struct FaceRows
     {
       unsigned int          pair, number; ///< of the face
-      std::vector<DoFIndex> nodes;        ///< first degrees of freedom: slave nodes of the face, then master nodes
-      std::vector<double>   weights;      ///< per slave node of the face: weight of each node, area, full area
-      std::vector<double>   vectors;      ///< per slave node of the face: offset, normal
+      std::vector<DoFIndex> slaves;       ///< first degrees of freedom
+      std::vector<DoFIndex> nodes;        ///< likewise: nodes of the face, then master nodes
+      std::vector<double>   weights;      ///< per slave node: weight of each node, area, full area
+      std::vector<double>   vectors;      ///< per slave node: offset, normal
 
       template <typename Archive>
       void serialize(Archive &archive, const unsigned int)
       {
-        archive &pair &number &nodes &weights &vectors;
+        archive &pair &number &slaves &nodes &weights &vectors;
       }
     };
 
@@ -99,7 +100,8 @@ namespace Nodus
     {
       const unsigned int        degree = slave.degree(), n = (degree + 1) * (degree + 1);
       const SurfaceFace        &face = slave.face(f);
-      FaceRows                  result{0, face.number, {}, {}, {}};
+      const unsigned int        m    = face.slaves.size();
+      FaceRows                  result{0, face.number, {}, {}, {}, {}};
       std::vector<unsigned int> nodes(face.nodes);
       for (const MortarPoint &point : points)
         for (const unsigned int node : master.face(point.master.face).nodes)
@@ -107,38 +109,46 @@ namespace Nodus
             nodes.push_back(node);
       for (const unsigned int node : nodes)
         result.nodes.push_back(surfaces.nodes()[node].dofs[0]);
+      for (const unsigned int k : face.slaves)
+        result.slaves.push_back(surfaces.nodes()[surfaces.slave_nodes()[k].node].dofs[0]);
+      // phi and hats are those of the slave nodes: where some of the face's nodes hang they are conforming
+      const auto of_slaves = [&](const auto &nodal) -> Column
+      {
+        const auto values = face.slave_values(nodal);
+        return Eigen::Map<const Column>(values.data(), m);
+      };
 
       // psi = part (D M^-1)^T phi + (1 - part) hat, with M and D over the covered part
-      Matrix              mass = Matrix::Zero(n, n);
-      Column              area = Column::Zero(n);
+      Matrix              mass = Matrix::Zero(m, m);
+      Column              area = Column::Zero(m);
       std::vector<double> weight(points.size());
       for (unsigned int q = 0; q < points.size(); ++q)
       {
         const FaceShape shape(degree, points[q].xi, points[q].eta);
-        weight[q] = points[q].weight * FaceGeometry(face, shape, measure).area_vector().norm();
-        const Eigen::Map<const Column> phi(shape.value.data(), n);
+        weight[q]        = points[q].weight * FaceGeometry(face, shape, measure).area_vector().norm();
+        const Column phi = of_slaves(shape.value);
         mass += weight[q] * phi * phi.transpose();
         area += weight[q] * phi;
       }
       const double part = std::clamp((coverage - dual_coverage) / (1. - dual_coverage - 1e-8), 0., 1.);
-      Matrix       dual = Matrix::Zero(n, n);
+      Matrix       dual = Matrix::Zero(m, m);
       if (part > 0.)
         dual = part * (mass.ldlt().solve(Matrix(area.asDiagonal()))).transpose();
 
       const unsigned int n_columns = result.nodes.size() + 2;
-      result.weights.assign(n * n_columns, 0.);
-      result.vectors.assign(6 * n, 0.);
-      all_psi.resize(n * points.size());
+      result.weights.assign(m * n_columns, 0.);
+      result.vectors.assign(6 * m, 0.);
+      all_psi.resize(m * points.size());
       for (unsigned int q = 0; q < points.size(); ++q)
       {
-        const MortarPoint             &point = points[q];
-        const FaceShape                shape(degree, point.xi, point.eta);
-        const FaceShape                master_shape(degree, point.master.xi, point.master.eta);
-        const SurfaceFace             &master_face = master.face(point.master.face);
-        const Eigen::Map<const Column> phi(shape.value.data(), n);
-        const Column                   hat = hats(degree, point.xi, point.eta);
-        const Column                   psi = weight[q] * (dual * phi + (1. - part) * hat);
-        const Vector3                  offset =
+        const MortarPoint &point = points[q];
+        const FaceShape    shape(degree, point.xi, point.eta);
+        const FaceShape    master_shape(degree, point.master.xi, point.master.eta);
+        const SurfaceFace &master_face = master.face(point.master.face);
+        const Column       phi         = of_slaves(shape.value);
+        const Column       hat         = of_slaves(hats(degree, point.xi, point.eta));
+        const Column       psi         = weight[q] * (dual * phi + (1. - part) * hat);
+        const Vector3      offset =
             slave.offset(f, point.xi, point.eta) - master.offset(point.master.face, point.master.xi, point.master.eta);
         const Vector3 normal = pair.normal == ContactPairParameters::Normal::slave
                                    ? slave.averaged_normal(f, point.xi, point.eta)
@@ -148,10 +158,10 @@ namespace Nodus
         unsigned int  column[9];
         for (unsigned int b = 0; b < n; ++b)
           column[b] = std::find(nodes.begin() + n, nodes.end(), master_face.nodes[b]) - nodes.begin();
-        for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int a = 0; a < m; ++a)
         {
           double *const row  = result.weights.data() + a * n_columns;
-          all_psi[n * q + a] = psi[a];
+          all_psi[m * q + a] = psi[a];
           for (unsigned int b = 0; b < n; ++b)
           {
             row[b] += psi[a] * shape.value[b];
@@ -168,15 +178,15 @@ namespace Nodus
       // The points on a curved face integrate its shape functions nearly, Gauss points to round-off: nodal areas of
       // covered faces are those.
       static const dealii::QGauss<2> gauss(4);
-      Column exact = Column::Zero(n), full = Column::Zero(n); // areas of the dual functions, hats
+      Column exact = Column::Zero(m), full = Column::Zero(m); // areas of the dual functions, hats
       for (unsigned int q = 0; q < gauss.size(); ++q)
       {
         const FaceShape shape(degree, gauss.point(q)[0], gauss.point(q)[1]);
         const double    area = gauss.weight(q) * FaceGeometry(face, shape, measure).area_vector().norm();
-        exact += area * Eigen::Map<const Column>(shape.value.data(), n);
-        full += area * hats(degree, gauss.point(q)[0], gauss.point(q)[1]);
+        exact += area * of_slaves(shape.value);
+        full += area * of_slaves(hats(degree, gauss.point(q)[0], gauss.point(q)[1]));
       }
-      for (unsigned int a = 0; a < n; ++a)
+      for (unsigned int a = 0; a < m; ++a)
       {
         double *const row = result.weights.data() + a * n_columns;
         if (part > 0.)
@@ -187,22 +197,33 @@ namespace Nodus
           for (unsigned int c = 0; c < dim; ++c)
             result.vectors[6 * a + c] *= scale;
           for (unsigned int q = 0; q < points.size(); ++q)
-            all_psi[n * q + a] *= scale;
+            all_psi[m * q + a] *= scale;
         }
         row[n_columns - 1] = part * exact[a] + (1. - part) * full[a];
       }
       return result;
     }
 
-    void add(std::vector<AveragedJump::Entry> &entries, const unsigned int node, const double weight)
+    /// A hanging node is where those are that it follows, but for its reference position.
+    void add(const ContactSurfaces            &surfaces,
+             std::vector<AveragedJump::Entry> &entries,
+             const unsigned int                node,
+             const double                      weight,
+             Vector3                          &offset)
     {
-      for (auto &entry : entries)
-        if (entry.node == node)
-        {
-          entry.weight += weight;
-          return;
-        }
-      entries.push_back({node, weight});
+      surfaces.expand(node,
+                      weight,
+                      [&](const unsigned int free_node, const double part)
+                      {
+                        for (auto &entry : entries)
+                          if (entry.node == free_node)
+                          {
+                            entry.weight += part;
+                            return;
+                          }
+                        entries.push_back({free_node, part});
+                      });
+      offset += weight * surfaces.nodes()[node].offset;
     }
   } // namespace
 
@@ -264,8 +285,8 @@ namespace Nodus
     for (unsigned int i = 0; i < mine.size(); ++i)
     {
       std::set<unsigned int> owners;
-      for (const unsigned int node : surfaces.slave_faces(faces_[i].pair)[faces_[i].face].nodes)
-        owners.insert(surfaces.nodes()[node].owner);
+      for (const unsigned int k : surfaces.slave_faces(faces_[i].pair)[faces_[i].face].slaves)
+        owners.insert(surfaces.site_owner(k));
       for (const unsigned int owner : owners)
         outgoing[owner].push_back(mine[i]);
     }
@@ -281,16 +302,16 @@ namespace Nodus
     for (const FaceRows &face : mine)
     {
       const unsigned int n_columns = face.nodes.size() + 2;
-      for (unsigned int a = 0; a < n; ++a)
+      for (unsigned int a = 0; a < face.slaves.size(); ++a)
       {
-        const unsigned int k = surfaces.slave_number(surfaces.node(face.nodes[a]));
+        const unsigned int k = surfaces.slave_number(surfaces.node(face.slaves[a]));
         if (!surfaces.is_owned(k))
           continue;
         Row                &row = rows_[k];
         const double *const w   = face.weights.data() + a * n_columns;
         for (unsigned int b = 0; b < face.nodes.size(); ++b)
           if (w[b] != 0.)
-            add(b < n ? row.slave : row.master, surfaces.node(face.nodes[b]), w[b]);
+            add(surfaces, b < n ? row.slave : row.master, surfaces.node(face.nodes[b]), w[b], row.offset);
         row.area += w[n_columns - 2];
         full[k] += w[n_columns - 1];
         for (unsigned int c = 0; c < dim; ++c)

@@ -1,6 +1,8 @@
 #include <nodus/contact/surface.h>
 #include <nodus/mesh/region.h>
 
+#include <memory>
+
 namespace Nodus
 {
   namespace
@@ -19,15 +21,15 @@ namespace Nodus
   void
   balance_contact(const std::vector<ContactPairParameters> &pairs, const dealii::Mapping<dim> &mapping, Bodies &bodies)
   {
-    std::vector<Region> slaves;
+    const auto slaves = std::make_shared<std::vector<Region>>();
     for (unsigned int p = 0; p < pairs.size(); ++p)
-      slaves.emplace_back(pairs[p].slave, bodies, pair_label(pairs, p) + ", slave");
+      slaves->emplace_back(pairs[p].slave, bodies, pair_label(pairs, p) + ", slave");
     bodies.balance(
-        [&](const Bodies::Triangulation::cell_iterator &cell)
+        [slaves, &mapping](const Bodies::Triangulation::cell_iterator &cell)
         {
           unsigned int weight = cell_weight;
           for (const unsigned int f : cell->face_indices())
-            for (const Region &region : slaves)
+            for (const Region &region : *slaves)
               weight += cell->face(f)->at_boundary() && region.selects_face(mapping, cell, f) ? slave_face_weight : 0;
           return weight;
         });

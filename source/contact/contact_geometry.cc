@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace Nodus
 {
@@ -38,23 +39,43 @@ namespace Nodus
       , on_rim_(master.n_faces())
   {
     const unsigned int degree = master.degree();
-    const auto         edge   = [&](const SurfaceFace &face, const unsigned int e)
+    // The nodes of an edge, or those of the larger face's edge that it is half of.
+    const auto edge = [&](const SurfaceFace &face, const unsigned int e)
     {
-      const unsigned int n = degree + 1, last = n * n - 1;
-      const unsigned int ends[4][2] = {{0, n * degree}, {degree, last}, {0, degree}, {n * degree, last}};
-      return std::make_pair(std::min(face.nodes[ends[e][0]], face.nodes[ends[e][1]]),
-                            std::max(face.nodes[ends[e][0]], face.nodes[ends[e][1]]));
+      const unsigned int     n = degree + 1, first[4] = {0, degree, 0, n * degree}, step[4] = {n, n, 1, 1};
+      std::set<unsigned int> nodes;
+      for (unsigned int i = 0; i < n; ++i)
+        nodes.insert(face.nodes[first[e] + i * step[e]]);
+      for (unsigned int i = 0; i < n; ++i)
+        if (const auto *const hung = face.follower(first[e] + i * step[e]))
+        {
+          std::set<unsigned int> larger;
+          for (const auto &[node, weight] : hung->masters)
+            larger.insert(node);
+          nodes.erase(face.nodes[first[e] + i * step[e]]);
+          if (std::includes(larger.begin(), larger.end(), nodes.begin(), nodes.end()))
+            return std::make_pair(larger, true);
+          nodes.insert(face.nodes[first[e] + i * step[e]]);
+        }
+      return std::make_pair(nodes, false);
     };
-    std::map<std::pair<unsigned int, unsigned int>, unsigned int> count;
+    std::map<std::set<unsigned int>, std::array<unsigned int, 2>> count; // faces with the whole edge, with half of it
     for (unsigned int f = 0; f < master.n_faces(); ++f)
       for (unsigned int e = 0; e < 4; ++e)
-        ++count[edge(master.face(f), e)];
+      {
+        const auto &[nodes, half] = edge(master.face(f), e);
+        ++count[nodes][half];
+      }
 
     std::vector<Tree::Leaf> leaves;
     for (unsigned int f = 0; f < master.n_faces(); ++f)
     {
       for (unsigned int e = 0; e < 4; ++e)
-        on_rim_[f][e] = count[edge(master.face(f), e)] == 1;
+      {
+        const auto &[nodes, half]  = edge(master.face(f), e);
+        const auto &[whole, parts] = count[nodes];
+        on_rim_[f][e]              = half ? whole == 0 : whole + parts == 1;
+      }
       const double area = master.at(f, 0.5, 0.5).area_vector().norm();
       centre_normal_.push_back(master.normal(f, 0.5, 0.5));
       size_.push_back(std::sqrt(area));

@@ -10,8 +10,15 @@
 
 namespace Nodus
 {
+  namespace
+  {
+    /// Weights of a quadratic edge are multiples of 1/8.
+    constexpr double smallest_share = 0.1;
+  } // namespace
+
   FaceDirectory::FaceDirectory(const dealii::DoFHandler<dim> &dof_handler, const unsigned int n_pairs)
       : dof_handler_(dof_handler)
+      , hanging_(dof_handler)
       , rank_(dealii::Utilities::MPI::this_mpi_process(dof_handler.get_communicator()))
       , n_face_nodes_((dof_handler.get_fe().degree + 1) * (dof_handler.get_fe().degree + 1))
       , own_(2 * n_pairs)
@@ -32,6 +39,8 @@ namespace Nodus
     const auto        &support_points = base.get_unit_support_points();
     const unsigned int n_1d           = fe.degree + 1;
 
+    if (hanging_.exist() && followed_.empty())
+      followed_ = hanging_.followed(dof_handler_, mapping);
     std::vector<DoFIndex> cell_dofs(fe.n_dofs_per_cell());
     for (const auto &cell : dof_handler_.active_cell_iterators())
       if (cell->is_locally_owned() && cell->at_boundary())
@@ -46,6 +55,7 @@ namespace Nodus
             record.pair        = pair;
             record.side        = side;
             record.rank        = rank_;
+            record.cell        = cell->active_cell_index();
             for (unsigned int i = 0; i < base.n_dofs_per_cell(); ++i)
               if (std::abs(support_points[i][normal] - f % 2) < 1e-12)
               {
@@ -59,8 +69,69 @@ namespace Nodus
                   record.X[n][c]    = X[c];
                 }
               }
+            for (unsigned int n = 0; n < n_face_nodes_; ++n)
+              if (const auto *const masters = hanging_.masters(record.dofs[n][0] / dim))
+                for (const auto &[master, weight] : *masters)
+                {
+                  const Point &X = followed_.at(master);
+                  record.followers.push_back({n, dim * master, {X[0], X[1], X[2]}, weight, 0.});
+                }
             own_[2 * pair + side].push_back(record);
           }
+  }
+
+  std::vector<DoFIndex> FaceDirectory::support(const FaceRecord &face) const
+  {
+    std::vector<DoFIndex> nodes;
+    for (unsigned int n = 0; n < n_face_nodes_; ++n)
+      if (!face.hangs(n))
+        nodes.push_back(face.dofs[n][0]);
+    for (const auto &follower : face.followers)
+      if (follower.share != 0. && std::find(nodes.begin(), nodes.end(), follower.dof) == nodes.end())
+        nodes.push_back(follower.dof);
+    return nodes;
+  }
+
+  /// The multiplier at a hanging node follows those of its masters on this side, with weights of sum one: uniform
+  /// pressures remain uniform where one of the masters lies beyond the edge of the region.
+  void FaceDirectory::share_multipliers()
+  {
+    if (!hanging_.exist())
+      return;
+    using dealii::Utilities::MPI::some_to_some;
+    const MPI_Comm                               communicator = dof_handler_.get_communicator();
+    std::map<unsigned int, std::vector<NodeKey>> nodes, questions;
+    for (unsigned int i = 0; i < own_.size(); ++i)
+      for (const FaceRecord &face : own_[i])
+      {
+        for (unsigned int n = 0; n < n_face_nodes_; ++n)
+          if (!face.hangs(n))
+            nodes[owner(face.dofs[n][0])].emplace_back(i, face.dofs[n][0]);
+        for (const auto &follower : face.followers)
+          questions[owner(follower.dof)].emplace_back(i, follower.dof);
+      }
+    std::set<NodeKey> present;
+    for (const auto &[other, keys] : some_to_some(communicator, nodes))
+      present.insert(keys.begin(), keys.end());
+    std::map<unsigned int, std::vector<NodeKey>> answers;
+    for (const auto &[other, keys] : some_to_some(communicator, questions))
+      for (const NodeKey &key : keys)
+        if (present.count(key) == 1)
+          answers[other].push_back(key);
+    std::set<NodeKey> on_side;
+    for (const auto &[other, keys] : some_to_some(communicator, answers))
+      on_side.insert(keys.begin(), keys.end());
+    for (unsigned int i = 0; i < own_.size(); ++i)
+      for (FaceRecord &face : own_[i])
+        for (auto &follower : face.followers)
+        {
+          double sum = 0.;
+          for (const auto &other : face.followers)
+            if (other.n == follower.n && on_side.count({i, other.dof}) == 1)
+              sum += other.weight;
+          follower.share =
+              on_side.count({i, follower.dof}) == 1 && std::abs(sum) > smallest_share ? follower.weight / sum : 0.;
+        }
   }
 
   void FaceDirectory::publish()
@@ -84,13 +155,14 @@ namespace Nodus
         face.number = first++;
     }
 
+    share_multipliers();
     std::map<unsigned int, std::vector<FaceRecord>> outgoing;
     for (const auto &faces : own_)
       for (const FaceRecord &face : faces)
       {
         std::set<unsigned int> ranks;
-        for (unsigned int n = 0; n < n_face_nodes_; ++n)
-          ranks.insert(owner(face.dofs[n][0]));
+        for (const DoFIndex dof : support(face))
+          ranks.insert(owner(dof));
         for (const unsigned int r : ranks)
           outgoing[r].push_back(face);
       }
@@ -99,9 +171,9 @@ namespace Nodus
     for (unsigned int f = 0; f < at_own_nodes_.size(); ++f)
     {
       const FaceRecord &face = at_own_nodes_[f];
-      for (unsigned int n = 0; n < n_face_nodes_; ++n)
-        if (owner(face.dofs[n][0]) == rank_)
-          incident_[{2 * face.pair + face.side, face.dofs[n][0]}].push_back(f);
+      for (const DoFIndex dof : support(face))
+        if (owner(dof) == rank_)
+          incident_[{2 * face.pair + face.side, dof}].push_back(f);
     }
   }
 
@@ -112,8 +184,8 @@ namespace Nodus
     std::map<unsigned int, std::vector<NodeKey>>    questions;
     std::map<unsigned int, std::vector<FaceRecord>> answers;
     for (const FaceRecord &face : faces)
-      for (unsigned int n = 0; n < n_face_nodes_; ++n)
-        nodes[owner(face.dofs[n][0])].insert({2 * face.pair + face.side, face.dofs[n][0]});
+      for (const DoFIndex dof : support(face))
+        nodes[owner(dof)].insert({2 * face.pair + face.side, dof});
     for (const auto &[other, keys] : nodes)
       questions[other].assign(keys.begin(), keys.end());
     for (const auto &[other, keys] : dealii::Utilities::MPI::some_to_some(communicator, questions))

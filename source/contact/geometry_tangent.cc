@@ -200,7 +200,9 @@ namespace Nodus
                                    Blocks               &blocks) const
   {
     const unsigned int pair = surfaces_.pair(point.sites[0].first);
-    if (!(side == 0 ? geometry_.slave : geometry_.master)[pair].smoothed())
+    // what the offset of a hanging node adds is left out
+    const SurfaceGeometry &surface = (side == 0 ? geometry_.slave : geometry_.master)[pair];
+    if (!surface.smoothed() || !surface.face(face).hanging.empty())
       return;
     std::array<double, 4> value;
     for (unsigned int edge = 0; edge < 4; ++edge)
@@ -253,13 +255,13 @@ namespace Nodus
     for (const AveragedJump::Face &face : averaged_.faces())
     {
       blocks.clear();
-      const auto        &nodes = surfaces_.slave_faces(face.pair)[face.face].nodes;
-      const unsigned int n     = nodes.size();
+      const auto        &slaves = surfaces_.slave_faces(face.pair)[face.face].slaves;
+      const unsigned int n      = slaves.size();
       for (unsigned int q = 0; q < face.points.size(); ++q)
       {
         ProjectedPoint point;
         for (unsigned int a = 0; a < n; ++a)
-          if (const unsigned int k = surfaces_.slave_number(nodes[a]); averaged_.covered(k) && active(k))
+          if (const unsigned int k = slaves[a]; averaged_.covered(k) && active(k))
             point.sites.emplace_back(k, face.psi[n * q + a] / averaged_.row(k).area);
         if (point.sites.empty())
           continue;
@@ -341,26 +343,39 @@ namespace Nodus
     const auto         &nodes  = surfaces_.nodes();
     const std::uint64_t size   = nodes.size();
     system.variation.reserve(system.variation.row.size() + dim * dim * sum.force.size() + dim * sum.gap.size());
-    for (const auto &[key, value] : sum.force)
+    const auto add_force = [&](const unsigned int row, const unsigned int column, const Matrix3 &value)
     {
-      const unsigned int row = key / size, column = key % size;
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = 0; j < dim && !surfaces_.fixed(row, i); ++j)
           if (surfaces_.fixed(column, j))
             system.rhs.block(0)(nodes[row].dofs[i]) -= value[i][j] * state.prescribed[column][j];
           else
             system.variation.add(nodes[row].dofs[i], nodes[column].dofs[j], value[i][j]);
-    }
-    for (const auto &[key, value] : sum.gap)
+    };
+    const auto add_gap = [&](const DoFIndex multiplier, const unsigned int column, const Vector3 &value)
     {
-      const DoFIndex     multiplier = surfaces_.multiplier(key / size);
-      const unsigned int column     = key % size;
       for (unsigned int j = 0; j < dim; ++j)
         if (surfaces_.fixed(column, j))
           system.rhs.block(1)(multiplier) -= value[j] * state.prescribed[column][j];
         else if (value[j] != 0.)
           system.variation.add(layout.lambda(multiplier), nodes[column].dofs[j], value[j]);
-    }
+    };
+    for (const auto &[key, value] : sum.force)
+      surfaces_.expand(key / size,
+                       1.,
+                       [&, column = key % size, &value = value](const unsigned int row, const double row_part)
+                       {
+                         surfaces_.expand(column,
+                                          row_part,
+                                          [&](const unsigned int free_column, const double part)
+                                          { add_force(row, free_column, part * value); });
+                       });
+    for (const auto &[key, value] : sum.gap)
+      surfaces_.expand(key % size,
+                       1.,
+                       [&, multiplier = surfaces_.multiplier(key / size), &value = value](const unsigned int column,
+                                                                                          const double       part)
+                       { add_gap(multiplier, column, part * value); });
     system.rhs.block(0).compress(dealii::VectorOperation::add);
     system.rhs.block(1).compress(dealii::VectorOperation::add);
     system.symmetric = false;

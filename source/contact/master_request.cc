@@ -208,15 +208,16 @@ namespace Nodus
     std::vector<Question> mine;
     for (unsigned int p = 0; p < pairs.size(); ++p)
       for (const SurfaceFace &face : surfaces.slave_faces(p))
-        if (face.owner == rank ||
-            std::any_of(face.nodes.begin(),
-                        face.nodes.end(),
-                        [&](const unsigned int n) { return surfaces.is_owned(surfaces.slave_number(n)); }))
+        if (face.owner == rank || std::any_of(face.slaves.begin(),
+                                              face.slaves.end(),
+                                              [&](const unsigned int k) { return surfaces.is_owned(k); }))
         {
           Question question{};
-          question.pair     = p;
-          const Box     box = face_box(face, degree, x);
-          const Vector3 n   = centre_normal(face, degree, x);
+          question.pair = p;
+          Box box       = face_box(face, degree, x);
+          for (const unsigned int k : face.slaves) // nodes that hanging ones follow lie beyond the face
+            box.merge_with(Box({x[surfaces.slave_nodes()[k].node], x[surfaces.slave_nodes()[k].node]}));
+          const Vector3 n = centre_normal(face, degree, x);
           for (unsigned int c = 0; c < dim; ++c)
           {
             question.lower[c]  = box.lower_bound(c);

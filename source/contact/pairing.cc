@@ -91,7 +91,9 @@ namespace Nodus
             for (unsigned int n = 0; n < nodes.size(); ++n)
             {
               const unsigned int k = surfaces.slave_number(nodes[n]);
-              x[k]                 = geometry.slave[p].positions()[nodes[n]];
+              if (k == dealii::numbers::invalid_unsigned_int)
+                continue; // hangs
+              x[k] = geometry.slave[p].positions()[nodes[n]];
               // the faces of a node agree, but across a sharp edge: there the site looks half-way
               normal[k] += geometry.slave[p].nodal_normal(f, n);
             }

@@ -105,7 +105,7 @@ namespace Nodus
   void RigidMotions::hold_prescribed(const dealii::AffineConstraints<double> &constraints)
   {
     for (const DoFIndex dof : dof_handler_.locally_owned_dofs())
-      if (constraints.is_constrained(dof))
+      if (is_prescribed(constraints, dof))
         hold(dof);
   }
 

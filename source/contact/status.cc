@@ -420,8 +420,8 @@ namespace Nodus
     surfaces_.site_exchange().update(records);
     for (unsigned int k = 0; k < records.size(); ++k)
     {
-      committed_.contact[k]    = records[k][0] != 0.;
-      committed_.stick[k]      = records[k][1] != 0.;
+      committed_.contact[k]    = records[k][0] > 0.5; // or between those of others, on a new mesh
+      committed_.stick[k]      = records[k][1] > 0.5;
       committed_.threshold[k]  = records[k][2];
       committed_.slip[k]       = {{records[k][3], records[k][4]}};
       committed_.adjustment[k] = records[k][5];

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 namespace Nodus
 {
@@ -72,8 +73,10 @@ namespace Nodus
     std::unordered_map<DoFIndex, unsigned int> pair_of_node;
     for (const FaceRecord &face : directory_.at_own_nodes())
       for (unsigned int n = 0; n < (degree_ + 1) * (degree_ + 1) && face.side == slave_side; ++n)
-        if (const unsigned int other = pair_of_node.emplace(face.dofs[n][0], face.pair).first->second;
-            other != face.pair && directory_.owner(face.dofs[n][0]) == rank_)
+        if (face.hangs(n))
+          continue;
+        else if (const unsigned int other = pair_of_node.emplace(face.dofs[n][0], face.pair).first->second;
+                 other != face.pair && directory_.owner(face.dofs[n][0]) == rank_)
           return pair_label(pairs_, std::min(other, face.pair)) + " and " +
                  pair_label(pairs_, std::max(other, face.pair)) + " overlap: node (" + std::to_string(face.X[n][0]) +
                  ", " + std::to_string(face.X[n][1]) + ", " + std::to_string(face.X[n][2]) +
@@ -92,7 +95,8 @@ namespace Nodus
         for (unsigned int n = 0; n < n_face_nodes && slave; ++n)
         {
           const auto at = node_of_dof_.find(face.dofs[n][0]);
-          slave         = at != node_of_dof_.end() && slave_nodes_[at->second].pair == p;
+          slave         = at != node_of_dof_.end() &&
+                  (face.hangs(n) || (at->second < slave_nodes_.size() && slave_nodes_[at->second].pair == p));
         }
         if (slave)
           return pair_label(pairs_, p) +
@@ -101,17 +105,46 @@ namespace Nodus
     return "";
   }
 
-  void ContactSurfaces::add_node(const FaceRecord &record, const unsigned int n)
+  /// Unless it is there.
+  void ContactSurfaces::add_node(const DoFIndex dof, const double *const X)
   {
-    SurfaceNode node;
+    if (!node_of_dof_.emplace(dof, nodes_.size()).second)
+      return;
+    nodes_.emplace_back();
+    SurfaceNode &node = nodes_.back();
     for (unsigned int c = 0; c < dim; ++c)
     {
-      node.dofs[c] = record.dofs[n][c];
-      node.X[c]    = record.X[n][c];
+      node.dofs[c] = dof + c;
+      node.X[c]    = X[c];
     }
-    node.owner = directory_.owner(node.dofs[0]);
-    node_of_dof_.emplace(node.dofs[0], nodes_.size());
-    nodes_.push_back(node);
+    node.owner = directory_.owner(dof);
+  }
+
+  void ContactSurfaces::add_nodes(const FaceRecord &record)
+  {
+    for (unsigned int n = 0; n < (degree_ + 1) * (degree_ + 1); ++n)
+      add_node(record.dofs[n][0], record.X[n]);
+    for (const FaceRecord::Follower &follower : record.followers)
+      add_node(follower.dof, follower.X);
+  }
+
+  void ContactSurfaces::link_followers(const std::vector<FaceRecord> &records)
+  {
+    for (const FaceRecord &record : records)
+    {
+      std::set<unsigned int> linked;
+      for (const auto &follower : record.followers)
+      {
+        const unsigned int hanging = node(record.dofs[follower.n][0]);
+        if (linked.insert(hanging).second)
+        {
+          nodes_[hanging].masters.clear();
+          nodes_[hanging].offset = Vector3(nodes_[hanging].X);
+        }
+        nodes_[hanging].masters.emplace_back(node(follower.dof), follower.weight);
+        nodes_[hanging].offset -= follower.weight * Vector3(follower.X);
+      }
+    }
   }
 
   SurfaceFace ContactSurfaces::make_face(const FaceRecord &record) const
@@ -122,6 +155,35 @@ namespace Nodus
     face.orientation = record.orientation;
     face.owner       = record.rank;
     face.number      = record.number;
+    face.cell        = record.cell;
+    for (const auto &follower : record.followers)
+    {
+      if (face.hanging.empty() || face.hanging.back().n != follower.n)
+        face.hanging.push_back({follower.n, {}});
+      face.hanging.back().masters.emplace_back(node(follower.dof), follower.weight);
+    }
+    if (record.side == master_side)
+      return face;
+
+    for (unsigned int n = 0; n < face.nodes.size(); ++n)
+      if (!record.hangs(n))
+        face.slaves.push_back(slave_number(face.nodes[n]));
+    if (record.followers.empty())
+      return face;
+    for (const auto &follower : record.followers)
+      if (const unsigned int k = slave_number(node(follower.dof));
+          follower.share != 0. && std::find(face.slaves.begin(), face.slaves.end(), k) == face.slaves.end())
+        face.slaves.push_back(k);
+    const auto column = [&](const unsigned int k)
+    { return std::find(face.slaves.begin(), face.slaves.end(), k) - face.slaves.begin(); };
+    AssertThrow(face.slaves.size() <= face.nodes.size(), dealii::ExcMessage("a face with too many hanging nodes"));
+    face.basis.assign(face.nodes.size() * face.slaves.size(), 0.);
+    for (unsigned int n = 0; n < face.nodes.size(); ++n)
+      if (!record.hangs(n))
+        face.basis[n * face.slaves.size() + column(slave_number(face.nodes[n]))] = 1.;
+    for (const auto &follower : record.followers)
+      if (follower.share != 0.)
+        face.basis[follower.n * face.slaves.size() + column(slave_number(node(follower.dof)))] = follower.share;
     return face;
   }
 
@@ -139,15 +201,24 @@ namespace Nodus
     // Own nodes first; their degrees of freedom are a range of the global ones.
     struct Place
     {
-      bool              ghost;
-      DoFIndex          dof;
-      const FaceRecord *record;
-      unsigned int      n;
+      bool          ghost;
+      DoFIndex      dof;
+      unsigned int  pair;
+      const double *X;
     };
     std::vector<Place> places;
     for (const FaceRecord &record : records)
+    {
+      const auto add = [&](const DoFIndex dof, const double *const X) {
+        places.push_back({directory_.owner(dof) != rank_, dof, record.pair, X});
+      };
       for (unsigned int n = 0; n < (degree_ + 1) * (degree_ + 1); ++n)
-        places.push_back({directory_.owner(record.dofs[n][0]) != rank_, record.dofs[n][0], &record, n});
+        if (!record.hangs(n))
+          add(record.dofs[n][0], record.X[n]);
+      for (const auto &follower : record.followers)
+        if (follower.share != 0.)
+          add(follower.dof, follower.X);
+    }
     std::stable_sort(places.begin(),
                      places.end(),
                      [](const Place &a, const Place &b)
@@ -155,10 +226,14 @@ namespace Nodus
     for (const Place &place : places)
       if (nodes_.empty() || nodes_.back().dofs[0] != place.dof)
       {
-        slave_nodes_.push_back({static_cast<unsigned int>(nodes_.size()), place.record->pair});
-        add_node(*place.record, place.n);
+        slave_nodes_.push_back({static_cast<unsigned int>(nodes_.size()), place.pair});
+        add_node(place.dof, place.X);
         n_owned_slave_nodes_ += !place.ghost;
       }
+    for (const FaceRecord &record : records)
+      add_nodes(record);
+    link_followers(records);
+    n_slave_side_nodes_ = nodes_.size();
     for (const FaceRecord &record : records)
       slave_faces_[record.pair].push_back(make_face(record));
   }
@@ -188,7 +263,8 @@ namespace Nodus
       {
         const DoFIndex first = (first_face + face.number) * places_on_face;
         for (unsigned int n = 0; n < face.nodes.size(); ++n)
-          order_[face.nodes[n]] = std::min(order_[face.nodes[n]], first + n);
+          if (const unsigned int k = slave_number(face.nodes[n]); k != dealii::numbers::invalid_unsigned_int)
+            order_[k] = std::min(order_[k], first + n);
         for (unsigned int q = 0; q < n_points; ++q)
           order_[site++] = first + q;
       }
@@ -293,18 +369,17 @@ namespace Nodus
 
   void ContactSurfaces::take_master_faces(const std::vector<FaceRecord> &records)
   {
-    for (unsigned int i = slave_nodes_.size(); i < nodes_.size(); ++i)
+    for (unsigned int i = n_slave_side_nodes_; i < nodes_.size(); ++i)
       node_of_dof_.erase(nodes_[i].dofs[0]);
-    nodes_.resize(slave_nodes_.size());
+    nodes_.resize(n_slave_side_nodes_);
     for (auto &faces : master_faces_)
       faces.clear();
     for (const FaceRecord &record : records)
     {
-      for (unsigned int n = 0; n < (degree_ + 1) * (degree_ + 1); ++n)
-        if (node_of_dof_.count(record.dofs[n][0]) == 0)
-          add_node(record, n);
+      add_nodes(record);
       master_faces_[record.pair].push_back(make_face(record));
     }
+    link_followers(records);
 
     std::vector<DoFIndex> dofs;
     for (const auto &node : nodes_)
@@ -341,7 +416,7 @@ namespace Nodus
   void ContactSurfaces::set_fixed(const dealii::AffineConstraints<double> &constraints)
   {
     for (const auto i : layout_.owned[0])
-      fixed_mask_(i) = constraints.is_constrained(i) ? 1. : 0.;
+      fixed_mask_(i) = is_prescribed(constraints, i) ? 1. : 0.;
     fixed_mask_.compress(dealii::VectorOperation::insert);
     gather_fixed();
   }

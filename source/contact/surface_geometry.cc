@@ -95,7 +95,7 @@ namespace Nodus
       for (unsigned int n = 0; n < n_face_nodes; ++n)
       {
         const unsigned int node   = faces_[f].nodes[n];
-        Vector3            normal = sum_of_normals(f, n);
+        Vector3            normal = averaged_direction(f, n);
         normal /= normal.norm();
         if (on_symmetry_plane(node, normal))
         {
@@ -108,18 +108,42 @@ namespace Nodus
       }
   }
 
-  Vector3 SurfaceGeometry::sum_of_normals(const unsigned int f, const unsigned int n) const
+  template <typename Function>
+  void SurfaceGeometry::for_faces(const unsigned int node, const Vector3 &unit, const Function &g) const
   {
-    const unsigned int n_face_nodes = node_shapes_.size(), node = faces_[f].nodes[n];
-    Vector3            sum;
+    const unsigned int n_face_nodes = node_shapes_.size();
     for (unsigned int i = start_[node]; i < start_[node + 1]; ++i)
-      if (unit_[occurrence_[i]] * unit_[f * n_face_nodes + n] > smooth_cosine)
-      {
-        const SurfaceFace &face = faces_[occurrence_[i] / n_face_nodes];
-        const FaceGeometry geometry(face, node_shapes_[occurrence_[i] % n_face_nodes], positions_);
-        sum += face.orientation / (geometry.d_xi.norm_square() * geometry.d_eta.norm_square()) * geometry.area_vector();
-      }
+      if (unit_[occurrence_[i]] * unit > smooth_cosine)
+        g(faces_[occurrence_[i] / n_face_nodes], node_shapes_[occurrence_[i] % n_face_nodes]);
+  }
+
+  Vector3 SurfaceGeometry::sum_of_normals(const unsigned int node, const Vector3 &unit) const
+  {
+    Vector3 sum;
+    for_faces(node,
+              unit,
+              [&](const SurfaceFace &face, const FaceShape &shape)
+              {
+                const FaceGeometry geometry(face, shape, positions_);
+                sum += face.orientation / (geometry.d_xi.norm_square() * geometry.d_eta.norm_square()) *
+                       geometry.area_vector();
+              });
     return sum;
+  }
+
+  Vector3 SurfaceGeometry::averaged_direction(const unsigned int f, const unsigned int n) const
+  {
+    const Vector3 &unit = unit_[f * node_shapes_.size() + n];
+    const auto    *hung = faces_[f].follower(n);
+    Vector3        sum;
+    for (unsigned int m = 0; hung && m < hung->masters.size(); ++m)
+    {
+      const Vector3 normal = sum_of_normals(hung->masters[m].first, unit);
+      if (normal.norm() == 0.) // beyond a sharp edge
+        return sum_of_normals(faces_[f].nodes[n], unit);
+      sum += hung->masters[m].second / normal.norm() * normal;
+    }
+    return hung ? sum : sum_of_normals(faces_[f].nodes[n], unit);
   }
 
   bool SurfaceGeometry::on_symmetry_plane(const unsigned int node, const Vector3 &normal) const
@@ -138,8 +162,9 @@ namespace Nodus
                                                 const unsigned int           n,
                                                 std::vector<NodeDerivative> &derivative) const
   {
-    const unsigned int     n_face_nodes = node_shapes_.size(), node = faces_[f].nodes[n];
-    const Vector3          sum     = sum_of_normals(f, n);
+    const unsigned int     node    = faces_[f].nodes[n];
+    const Vector3         &unit    = unit_[f * node_shapes_.size() + n];
+    const Vector3          sum     = averaged_direction(f, n);
     dealii::Tensor<2, dim> to_unit = unit_derivative(sum);
     if (on_symmetry_plane(node, sum / sum.norm()))
     {
@@ -152,21 +177,36 @@ namespace Nodus
           projector[c][c] = 1.;
       to_unit = unit_derivative(free) * projector;
     }
-    for (unsigned int i = start_[node]; i < start_[node + 1]; ++i)
-      if (unit_[occurrence_[i]] * unit_[f * n_face_nodes + n] > smooth_cosine)
-      {
-        const SurfaceFace &face  = faces_[occurrence_[i] / n_face_nodes];
-        const FaceShape   &shape = node_shapes_[occurrence_[i] % n_face_nodes];
-        const FaceGeometry geometry(face, shape, positions_);
-        const Vector3     &a = geometry.d_xi, &b = geometry.d_eta;
-        const double       scale  = face.orientation / (a.norm_square() * b.norm_square());
-        const Vector3      normal = scale * geometry.area_vector();
-        const auto         to_a   = -scale * cross_matrix(b) - 2. / a.norm_square() * dealii::outer_product(normal, a);
-        const auto         to_b   = scale * cross_matrix(a) - 2. / b.norm_square() * dealii::outer_product(normal, b);
-        for (unsigned int m = 0; m < shape.n; ++m)
-          if (shape.d_xi[m] != 0. || shape.d_eta[m] != 0.)
-            add(derivative, face.nodes[m], to_unit * (shape.d_xi[m] * to_a + shape.d_eta[m] * to_b));
-      }
+    const auto *const hung         = faces_[f].follower(n);
+    bool              interpolated = hung;
+    for (unsigned int m = 0; interpolated && m < hung->masters.size(); ++m)
+      interpolated = sum_of_normals(hung->masters[m].first, unit).norm() > 0.;
+    if (!interpolated)
+      add_sum_derivative(node, unit, to_unit, derivative);
+    else
+      for (const auto &[master, weight] : hung->masters)
+        add_sum_derivative(master, unit, weight * to_unit * unit_derivative(sum_of_normals(master, unit)), derivative);
+  }
+
+  void SurfaceGeometry::add_sum_derivative(const unsigned int            node,
+                                           const Vector3                &unit,
+                                           const dealii::Tensor<2, dim> &factor,
+                                           std::vector<NodeDerivative>  &derivative) const
+  {
+    for_faces(node,
+              unit,
+              [&](const SurfaceFace &face, const FaceShape &shape)
+              {
+                const FaceGeometry geometry(face, shape, positions_);
+                const Vector3     &a = geometry.d_xi, &b = geometry.d_eta;
+                const double       scale  = face.orientation / (a.norm_square() * b.norm_square());
+                const Vector3      normal = scale * geometry.area_vector();
+                const auto to_a = -scale * cross_matrix(b) - 2. / a.norm_square() * dealii::outer_product(normal, a);
+                const auto to_b = scale * cross_matrix(a) - 2. / b.norm_square() * dealii::outer_product(normal, b);
+                for (unsigned int m = 0; m < shape.n; ++m)
+                  if (shape.d_xi[m] != 0. || shape.d_eta[m] != 0.)
+                    add(derivative, face.nodes[m], factor * (shape.d_xi[m] * to_a + shape.d_eta[m] * to_b));
+              });
   }
 
   void SurfaceGeometry::averaged_normal_derivative(const unsigned int           f,
@@ -204,28 +244,58 @@ namespace Nodus
           to_unit * (shape.d_eta[n] * cross_matrix(geometry.d_xi) - shape.d_xi[n] * cross_matrix(geometry.d_eta)));
   }
 
-  void SurfaceGeometry::smooth()
+  namespace
   {
-    // Middle of the edge from a to b: the chord turns by asin(rise / length) to either end's tangent.
-    const auto middle = [](const Point &a, const Point &b, const Vector3 &normal_a, const Vector3 &normal_b)
+    /// Middle of the edge from a to b: the chord turns by asin(rise / length) to either end's tangent.
+    Point edge_middle(const Point &a, const Point &b, const Vector3 &normal_a, const Vector3 &normal_b)
     {
       const Vector3 chord   = b - a;
       const double  sine    = 0.5 * (chord * normal_b - chord * normal_a) / chord.norm();
       const Vector3 sum     = normal_a + normal_b;
       const double  sagitta = 0.5 * chord.norm() * std::tan(0.5 * std::asin(std::clamp(sine, -0.7, 0.7)));
       return Point(a + 0.5 * chord + sagitta * sum / sum.norm());
-    };
+    }
+  } // namespace
 
+  Point SurfaceGeometry::smoothed_corner(const unsigned int f, const unsigned int n) const
+  {
+    const auto *const hung = faces_[f].follower(n);
+    if (!hung || hung->masters.size() != 2)
+      return positions_[faces_[f].nodes[n]];
+    const Vector3 &unit        = unit_[4 * f + n];
+    const auto     unit_normal = [&](const unsigned int node)
+    {
+      const Vector3 normal = sum_of_normals(node, unit);
+      return normal.norm() > 0. ? Vector3(normal / normal.norm()) : unit;
+    };
+    const unsigned int a = hung->masters[0].first, b = hung->masters[1].first;
+    return edge_middle(positions_[a], positions_[b], unit_normal(a), unit_normal(b));
+  }
+
+  /// Half an edge of a larger face is half of that edge's parabola.
+  Point SurfaceGeometry::smoothed_middle(const unsigned int f, const unsigned int a, const unsigned int b) const
+  {
+    for (const auto &[end, other] : {std::make_pair(a, b), std::make_pair(b, a)})
+      if (const auto *const hung = faces_[f].follower(end); hung && hung->masters.size() == 2)
+        for (unsigned int m = 0; m < 2; ++m)
+          if (hung->masters[m].first == faces_[f].nodes[other])
+            return Point(3. / 8. * Vector3(positions_[hung->masters[m].first]) +
+                         3. / 4. * Vector3(smoothed_corner(f, end)) -
+                         1. / 8. * Vector3(positions_[hung->masters[1 - m].first]));
+    return edge_middle(smoothed_corner(f, a), smoothed_corner(f, b), nodal_normal(f, a), nodal_normal(f, b));
+  }
+
+  void SurfaceGeometry::smooth()
+  {
     points_.resize(9 * faces_.size());
     for (unsigned int f = 0; f < faces_.size(); ++f)
     {
-      const auto corner = [&](const unsigned int n) { return positions_[faces_[f].nodes[n]]; };
-      Point     *x      = points_.data() + 9 * f;
+      Point *x = points_.data() + 9 * f;
       // corner n of the face is node 2 (n % 2) + 6 (n / 2) of the quadratic one
       for (unsigned int n = 0; n < 4; ++n)
-        x[2 * (n % 2) + 6 * (n / 2)] = corner(n);
+        x[2 * (n % 2) + 6 * (n / 2)] = smoothed_corner(f, n);
       for (const auto &[a, b, m] : edges)
-        x[m] = middle(corner(a), corner(b), nodal_normal(f, a), nodal_normal(f, b));
+        x[m] = smoothed_middle(f, a, b);
       // eight-node face
       x[4] = Point(0.5 * (Vector3(x[1]) + Vector3(x[3]) + Vector3(x[5]) + Vector3(x[7])) -
                    0.25 * (Vector3(x[0]) + Vector3(x[2]) + Vector3(x[6]) + Vector3(x[8])));

@@ -40,12 +40,12 @@ namespace Nodus
     {
       ContactPoint point{
           weight * FaceGeometry(face, shape, measure(p)).area_vector().norm(), {}, {}, face.owner, no_site};
-      for (unsigned int n = 0; n < face.nodes.size(); ++n)
+      const auto values = face.slave_values(shape.value);
+      for (unsigned int j = 0; j < face.slaves.size(); ++j)
       {
-        const unsigned int k = surfaces.slave_number(face.nodes[n]);
-        area_[k] += point.weight * shape.value[n];
-        point.slaves.push_back(k);
-        point.shape.push_back(shape.value[n]);
+        area_[face.slaves[j]] += point.weight * values[j];
+        point.slaves.push_back(face.slaves[j]);
+        point.shape.push_back(values[j]);
       }
       return point;
     };

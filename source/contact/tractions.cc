@@ -182,13 +182,35 @@ namespace Nodus
     }
     const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(surfaces.layout().communicator);
     for (unsigned int p = 0; p < pairs.size(); ++p)
+    {
+      std::map<unsigned int, unsigned int> place_of_hanging;
       for (const SurfaceFace &face : surfaces.slave_faces(p))
         if (face.owner == rank)
         {
           all[p].faces.emplace_back();
-          for (const unsigned int i : face.nodes)
-            all[p].faces.back().push_back(local_number[surfaces.slave_number(i)]);
+          for (unsigned int n = 0; n < face.nodes.size(); ++n)
+          {
+            const unsigned int node = face.nodes[n], k = surfaces.slave_number(node);
+            unsigned int       place;
+            if (k != dealii::numbers::invalid_unsigned_int)
+              place = local_number[k];
+            else if (const auto found = place_of_hanging.find(node); found != place_of_hanging.end())
+              place = found->second;
+            else
+            {
+              std::vector<std::pair<unsigned int, double>> shares;
+              for (unsigned int j = 0; j < face.slaves.size(); ++j)
+                if (const double share = face.basis[n * face.slaves.size() + j]; share != 0.)
+                  shares.emplace_back(local_number[face.slaves[j]], share);
+              const SurfaceNode &hung = surfaces.nodes()[node];
+              place = place_of_hanging[node] = all[p].X.size();
+              all[p].interpolate(
+                  shares, hung.X, state.x[node] - hung.X, surfaces.layout().n_slave_nodes + hung.dofs[0] / dim);
+            }
+            all[p].faces.back().push_back(place);
+          }
         }
+    }
     return all;
   }
 

@@ -1,4 +1,5 @@
 #include <nodus/mesh/bodies.h>
+#include <nodus/mesh/expression.h>
 #include <nodus/mesh/gmsh_reader.h>
 
 #include <deal.II/base/mpi.h>
@@ -335,27 +336,34 @@ namespace Nodus
   }
 
   /// In the distributed triangulation, so that the coarse mesh stays small and p4est knows the hierarchy. Bodies share
-  /// no face, so different levels make no hanging nodes.
+  /// no face, so different levels of theirs make no hanging nodes.
   void Bodies::refine(const std::vector<BodyParameters> &parameters)
   {
     unsigned int n_levels = 0;
     for (const auto &body : parameters)
-      n_levels = std::max(n_levels, body.global_refinement);
+      n_levels = std::max(n_levels, body.global_refinement + body.local_refinement);
+    std::vector<std::unique_ptr<dealii::FunctionParser<dim>>> where;
+    for (const auto &body : parameters)
+      where.push_back(body.local_refinement > 0 ? parse_expression(body.refine_where) : nullptr);
     for (unsigned int level = 0; level < n_levels; ++level)
     {
       for (const auto &cell : triangulation_.active_cell_iterators())
-        if (cell->is_locally_owned() && parameters[cell->material_id()].global_refinement > level)
-          cell->set_refine_flag();
+        if (cell->is_locally_owned())
+        {
+          const BodyParameters &body = parameters[cell->material_id()];
+          if (level < body.global_refinement || (level < body.global_refinement + body.local_refinement &&
+                                                 where[cell->material_id()]->value(cell->center()) != 0.))
+            cell->set_refine_flag();
+        }
       triangulation_.execute_coarsening_and_refinement();
     }
   }
 
   void Bodies::balance(const std::function<unsigned int(const Triangulation::cell_iterator &)> &weight)
   {
-    const auto connection = triangulation_.signals.weight.connect(
-        [&](const Triangulation::cell_iterator &cell, const Triangulation::CellStatus) { return weight(cell); });
+    triangulation_.signals.weight.connect(
+        [weight](const Triangulation::cell_iterator &cell, const Triangulation::CellStatus) { return weight(cell); });
     triangulation_.repartition();
-    connection.disconnect();
   }
 
   void Bodies::collect_extents()

@@ -1,7 +1,5 @@
 #include <nodus/mesh/expression.h>
-#include <nodus/types.h>
 
-#include <deal.II/base/function_parser.h>
 #include <deal.II/base/numbers.h>
 
 #include <algorithm>
@@ -37,5 +35,12 @@ namespace Nodus
     }
     std::cerr.rdbuf(screen);
     return message;
+  }
+
+  std::unique_ptr<dealii::FunctionParser<dim>> parse_expression(const std::string &expression)
+  {
+    auto function = std::make_unique<dealii::FunctionParser<dim>>(1);
+    function->initialize("x,y,z", expression, {{"pi", dealii::numbers::PI}});
+    return function;
   }
 } // namespace Nodus

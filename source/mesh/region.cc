@@ -1,9 +1,6 @@
 #include <nodus/mesh/expression.h>
 #include <nodus/mesh/region.h>
 
-#include <deal.II/base/function_parser.h>
-#include <deal.II/base/numbers.h>
-
 #include <set>
 #include <sstream>
 
@@ -18,9 +15,7 @@ namespace Nodus
       if (!complaint.empty())
         throw InputError(context + ": 'Where' = " + expression + " cannot be evaluated (" + complaint +
                          "); write a condition on x, y, z such as abs(x) < 1e-9 && z > 0.5");
-      auto predicate = std::make_unique<dealii::FunctionParser<dim>>(1);
-      predicate->initialize("x,y,z", expression, {{"pi", dealii::numbers::PI}});
-      return predicate;
+      return parse_expression(expression);
     }
   } // namespace
 

@@ -1,15 +1,14 @@
+#include <nodus/bulk/nodal_stress.h>
 #include <nodus/output/complete_file.h>
 #include <nodus/output/vtu.h>
 
 #include <deal.II/base/data_out_base.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/utilities.h>
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_tools.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/fe_values_extractors.h>
 #include <deal.II/grid/reference_cell.h>
-#include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/trilinos_vector.h>
 
 #include <array>
@@ -160,11 +159,6 @@ namespace Nodus
                                                {"cycle_period", 1},
                                                {"contradiction", 1}};
 
-    /// Where the six components of a symmetric tensor live in two vectors of three components per node. A third vector
-    /// has the equivalent plastic strain in its first component.
-    constexpr unsigned int stress_row[2][dim]    = {{0, 1, 2}, {1, 0, 0}};
-    constexpr unsigned int stress_column[2][dim] = {{0, 1, 2}, {2, 2, 1}};
-
     /// A file that @p write fills, complete or not at all. @returns what went wrong.
     template <typename Write>
     std::string write_complete(const std::string &folder, const std::string &name, const Write &write)
@@ -202,7 +196,6 @@ namespace Nodus
 
     Series written = {};
 
-    std::vector<Vector> nodal_values(const Vector &u) const;
     template <typename Function>
     void        for_nodes(const Vector &u, Output<dim> &output, const Function &f) const;
     void        add_bodies(const Vector &u, Output<dim> &output) const;
@@ -218,74 +211,6 @@ namespace Nodus
     void        write(const std::string &series, unsigned int increment, double t, const Output<patch_dim> &output);
     std::string write_record(const std::string &series) const;
   };
-
-  /// Cauchy stress and plastic strain at the nodes: lumped-mass L2 projection, that is the average of the integration
-  /// points weighted with the shape functions. The bodies share no nodes, so nothing is smeared from one body into the
-  /// other.
-  std::vector<Vector> VtuOutput::Implementation::nodal_values(const Vector &u) const
-  {
-    const auto       &fe    = dof_handler.get_fe();
-    const auto       &owned = dof_handler.locally_owned_dofs();
-    const QGauss<dim> quadrature(degree + 1);
-    FEValues<dim>     fe_values(mapping, fe, quadrature, update_values);
-    const bool        plastic = solid.has_history();
-
-    IndexSet relevant;
-    DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
-    AffineConstraints<double> hanging_nodes(relevant);
-    DoFTools::make_hanging_node_constraints(dof_handler, hanging_nodes);
-    hanging_nodes.close();
-
-    std::vector<Vector> nodal(plastic ? 3 : 2);
-    for (auto &v : nodal)
-      v.reinit(owned, communicator);
-    Vector mass(owned, communicator);
-
-    const unsigned int                   n_dofs = fe.n_dofs_per_cell();
-    std::vector<types::global_dof_index> dofs(n_dofs);
-    std::vector<dealii::Vector<double>>  cell_values(nodal.size());
-    dealii::Vector<double>               cell_mass(n_dofs);
-
-    solid.visit(
-        u,
-        [&](const DoFHandler<dim>::active_cell_iterator &cell, const std::vector<SolidAssembler::PointResult> &points)
-        {
-          fe_values.reinit(cell);
-          for (auto &v : cell_values)
-            v.reinit(n_dofs);
-          cell_mass = 0.;
-          for (unsigned int q = 0; q < points.size(); ++q)
-            for (unsigned int i = 0; i < n_dofs; ++i)
-            {
-              const unsigned int c      = fe.system_to_component_index(i).first;
-              const double       weight = fe_values.shape_value(i, q) * points[q].JxW;
-              cell_mass[i] += weight;
-              for (unsigned int part = 0; part < 2; ++part)
-                cell_values[part][i] += weight * points[q].cauchy_stress[stress_row[part][c]][stress_column[part][c]];
-              if (plastic && c == 0)
-                cell_values[2][i] += weight * points[q].equivalent_plastic_strain;
-            }
-          cell->get_dof_indices(dofs);
-          hanging_nodes.distribute_local_to_global(cell_mass, dofs, mass);
-          for (unsigned int part = 0; part < nodal.size(); ++part)
-            hanging_nodes.distribute_local_to_global(cell_values[part], dofs, nodal[part]);
-        });
-
-    mass.compress(VectorOperation::add);
-    std::vector<Vector> ghosted(nodal.size());
-    for (unsigned int part = 0; part < nodal.size(); ++part)
-    {
-      nodal[part].compress(VectorOperation::add);
-      for (const auto i : owned)
-        if (!hanging_nodes.is_constrained(i))
-          nodal[part](i) /= mass(i);
-      nodal[part].compress(VectorOperation::insert);
-      hanging_nodes.distribute(nodal[part]);
-      ghosted[part].reinit(owned, relevant, communicator);
-      ghosted[part] = nodal[part];
-    }
-    return ghosted;
-  }
 
   /// Calls f(cell, patch, node, j, dofs of the node) for the nodes of the owned cells, in the order of the patch, and
   /// adds their positions at displacement @p u.
@@ -326,18 +251,15 @@ namespace Nodus
 
   void VtuOutput::Implementation::add_bodies(const Vector &u, Output<dim> &output) const
   {
-    const auto values = nodal_values(u);
+    const NodalStress values(dof_handler, mapping, solid, u);
     for_nodes(u,
               output,
               [&](const auto &cell, const auto &dofs, Column &column)
               {
-                SymmetricTensor<2, dim> sigma;
-                for (unsigned int c = 0; c < dim; ++c)
-                  for (unsigned int part = 0; part < 2; ++part)
-                    sigma[stress_row[part][c]][stress_column[part][c]] = values[part](dofs[c]);
+                const SymmetricTensor<2, dim> sigma = values.stress(dofs[0]);
                 column << sigma << von_mises(sigma) << cell->material_id() + 1.;
-                if (values.size() > 2)
-                  column << values[2](dofs[0]);
+                if (values.has_plastic_strain())
+                  column << values.plastic_strain(dofs[0]);
               });
   }
 

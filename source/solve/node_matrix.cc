@@ -29,7 +29,7 @@ namespace Nodus
       , ghosts_(std::move(ghosts))
   {
     make_unique_ascending(ghosts_);
-    n_base_ghosts_ = ghosts_.size();
+    end_of_part_.push_back(ghosts_.size());
     for (const unsigned int n : dealii::Utilities::MPI::all_gather(communicator, n_owned_))
       start_.push_back(start_.back() + n);
     make_maps();
@@ -40,13 +40,14 @@ namespace Nodus
       , start_(base.start_)
       , first_(base.first_)
       , n_owned_(base.n_owned_)
-      , n_base_ghosts_(base.ghosts_.size())
       , ghosts_(base.ghosts_)
+      , end_of_part_(base.end_of_part_)
   {
     make_unique_ascending(ghosts);
     for (const DoFIndex node : ghosts)
       if (base.local(node) == dealii::numbers::invalid_unsigned_int)
         ghosts_.push_back(node);
+    end_of_part_.push_back(ghosts_.size());
     make_maps();
   }
 
@@ -72,12 +73,16 @@ namespace Nodus
   {
     if (node >= first_ && node < first_ + n_owned_)
       return node - first_;
-    const auto middle = ghosts_.begin() + n_base_ghosts_;
-    auto       ghost  = std::lower_bound(ghosts_.begin(), middle, node);
-    if (ghost == middle || *ghost != node)
-      ghost = std::lower_bound(middle, ghosts_.end(), node);
-    return ghost != ghosts_.end() && *ghost == node ? n_owned_ + (ghost - ghosts_.begin())
-                                                    : dealii::numbers::invalid_unsigned_int;
+    auto begin = ghosts_.begin();
+    for (const unsigned int end_of_part : end_of_part_)
+    {
+      const auto end   = ghosts_.begin() + end_of_part;
+      const auto ghost = std::lower_bound(begin, end, node);
+      if (ghost != end && *ghost == node)
+        return n_owned_ + (ghost - ghosts_.begin());
+      begin = end;
+    }
+    return dealii::numbers::invalid_unsigned_int;
   }
 
   std::map<DoFIndex, std::vector<double>>
@@ -108,26 +113,26 @@ namespace Nodus
   }
 
   void NodeMatrix::reinit(std::shared_ptr<const NodeMap>   map,
-                          const std::vector<unsigned int> &cell_nodes,
-                          const unsigned int               n)
+                          const std::vector<unsigned int> &group_nodes,
+                          const std::vector<std::size_t>  &group_end)
   {
-    const unsigned int         n_nodes = map->size(), n_cells = cell_nodes.size() / n;
-    std::vector<std::uint32_t> cell_start(n_nodes + 1, 0), cells(cell_nodes.size()); // the cells of each node
-    for (const unsigned int i : cell_nodes)
-      ++cell_start[i + 1];
+    const unsigned int         n_nodes = map->size();
+    std::vector<std::uint32_t> start(n_nodes + 1, 0), groups(group_nodes.size()); // the groups of each node
+    for (const unsigned int i : group_nodes)
+      ++start[i + 1];
     for (unsigned int i = 0; i < n_nodes; ++i)
-      cell_start[i + 1] += cell_start[i];
-    std::vector<std::uint32_t> next(cell_start);
-    for (unsigned int c = 0; c < n_cells; ++c)
-      for (unsigned int a = 0; a < n; ++a)
-        cells[next[cell_nodes[c * n + a]]++] = c;
+      start[i + 1] += start[i];
+    std::vector<std::uint32_t> next(start);
+    for (unsigned int g = 0; g < group_end.size(); ++g)
+      for (std::size_t k = g > 0 ? group_end[g - 1] : 0; k < group_end[g]; ++k)
+        groups[next[group_nodes[k]]++] = g;
     reinit(std::move(map),
            [&](const std::uint32_t i, std::vector<std::uint32_t> &columns)
            {
-             for (std::uint32_t k = cell_start[i]; k < cell_start[i + 1]; ++k)
-               for (unsigned int a = 0; a < n; ++a)
-                 if (const unsigned int j = cell_nodes[cells[k] * n + a]; j > i)
-                   columns.push_back(j);
+             for (std::uint32_t n = start[i]; n < start[i + 1]; ++n)
+               for (std::size_t k = groups[n] > 0 ? group_end[groups[n] - 1] : 0; k < group_end[groups[n]]; ++k)
+                 if (group_nodes[k] > i)
+                   columns.push_back(group_nodes[k]);
            });
   }
 

@@ -142,9 +142,14 @@ namespace ModelProblem
           }
       const auto                map = std::make_shared<NodeMap>(layout.owned[0], ghosts, MPI_COMM_WORLD);
       std::vector<unsigned int> local_nodes;
+      std::vector<std::size_t>  cell_end;
       for (const DoFIndex node : cell_nodes)
+      {
         local_nodes.push_back(map->local(node));
-      system.bulk.reinit(map, local_nodes, n / dim);
+        if (local_nodes.size() % (n / dim) == 0)
+          cell_end.push_back(local_nodes.size());
+      }
+      system.bulk.reinit(map, local_nodes, cell_end);
 
       for (const auto &cell : dof_handler.active_cell_iterators())
         if (touches_owned(cell, dofs))

@@ -1,6 +1,7 @@
 #ifndef nodus_bulk_boundary_conditions_h
 #define nodus_bulk_boundary_conditions_h
 
+#include <nodus/mesh/hanging_nodes.h>
 #include <nodus/mesh/region.h>
 #include <nodus/parameters.h>
 #include <nodus/types.h>
@@ -108,7 +109,8 @@ namespace Nodus
     std::vector<BoundaryConditionParameters>                  parameters_;
     std::vector<std::unique_ptr<dealii::FunctionParser<dim>>> functions_;
     std::vector<Prescribed>                                   prescribed_; ///< locally relevant
-    dealii::AffineConstraints<double>                         lines_;      ///< not closed: hanging nodes unresolved
+    HangingNodes                                              hanging_;
+    dealii::AffineConstraints<double>                         lines_; ///< not closed: hanging nodes unresolved
     dealii::AffineConstraints<double>                         homogeneous_, increment_;
     std::vector<Load>                                         loads_;
     std::vector<ReactionRegion>                               reaction_regions_;

@@ -35,6 +35,11 @@ namespace Nodus
     {
     }
 
+    /// Makes a state that was interpolated between others one of the law.
+    virtual void correct_state(double * /*state*/) const
+    {
+    }
+
     /// Of a law with history: the response to F from rest.
     /// @param F deformation gradient, det F > 0 is the caller's duty
     /// @param S second Piola-Kirchhoff stress [pressure]

@@ -33,6 +33,7 @@ namespace Nodus
                         Lanes (*C)[n_pairs][n_pairs]) const override;
     double energy(const dealii::Tensor<2, dim> &F) const override;
     double stored_energy(const dealii::Tensor<2, dim> &F, const double *state) const override;
+    void   correct_state(double *state) const override;
 
   protected:
     /// The state of a law with history: Cp^-1, then the equivalent plastic strain.

@@ -31,7 +31,8 @@ namespace Nodus
                    const std::vector<BodyParameters::VolumetricTreatment> &treatments = {});
 
     /// Nodal forces at displacement @p u (with ghosts) and time @p t, no constraints applied:
-    /// @p internal = int P:Grad phi (plus springs), @p external = loads. Both fully distributed.
+    /// @p internal = int P:Grad phi (plus springs), @p external = loads. Both fully distributed; those of hanging nodes
+    /// are given to the nodes that they follow.
     /// @throws SolverFailure on every rank when det F <= 0 anywhere, with cell centre and body.
     void forces(const Vector &u, double t, Vector &internal, Vector &external) const;
 
@@ -48,8 +49,8 @@ namespace Nodus
                  Vector                                  &internal,
                  Vector                                  &external) const;
 
-    /// Gives @p tangent its pattern; the last matrix that got one is that of tangent(). Meshes with hanging nodes are
-    /// not supported.
+    /// Gives @p tangent its pattern; the last matrix that got one is that of tangent(). Hanging nodes have a diagonal
+    /// alone.
     void make_sparsity(NodeMatrix &tangent) const;
 
     /// The state that the last call of forces() or tangent() led to is that of equilibrium.

@@ -1,6 +1,7 @@
 #ifndef nodus_bulk_solid_assembler_scratch_h
 #define nodus_bulk_solid_assembler_scratch_h
 
+#include <nodus/bulk/constrained_cells.h>
 #include <nodus/bulk/element_kernel.h>
 #include <nodus/bulk/loads.h>
 #include <nodus/bulk/solid_assembler.h>
@@ -9,7 +10,8 @@
 
 namespace Nodus
 {
-  /// Every rank integrates all cells around its nodes, those of its neighbours too: nothing has to be sent.
+  /// Every rank integrates all cells around its nodes, those of its neighbours too: nothing has to be sent, but for
+  /// cells with hanging nodes.
   struct SolidAssembler::Scratch
   {
     Scratch(const dealii::DoFHandler<dim>                          &dof_handler,
@@ -54,10 +56,11 @@ namespace Nodus
     std::vector<Batch>                          batches;
     std::vector<ElementKernel::QuadraturePoint> geometry;           ///< [batch][point]
     std::vector<Lanes>                          committed, current; ///< states: [batch][point][number]
-    std::shared_ptr<const NodeMap>              nodes;
+    ConstrainedCells                            constrained;
+    std::shared_ptr<const NodeMap>              nodes;      ///< of these cells, then of other ranks' constrained cells
     std::vector<unsigned int>                   cell_nodes; ///< [cell][node], local numbers
-    std::vector<DoFIndex>                       dofs;       ///< of the local nodes
-    std::vector<NodeMatrix::Position>           positions;  ///< [cell][node a][node b >= a]
+    std::vector<DoFIndex>                       dofs;       ///< of the nodes of these cells
+    std::vector<NodeMatrix::Position>           positions;  ///< [cell][node a][node b >= a]; constrained: not stored
 
     const Material &material(const Batch &batch) const
     {
@@ -66,6 +69,10 @@ namespace Nodus
     ElementKernel &kernel(const Batch &batch) const
     {
       return *kernels[cells[batch.first].body];
+    }
+    bool is_constrained(const unsigned int cell) const
+    {
+      return constrained.index(cell) != dealii::numbers::invalid_unsigned_int;
     }
     /// Gathers values at the local nodes.
     void get_displacement(const Batch &batch, const std::vector<double> &nodal, std::vector<Lanes> &values) const;
@@ -93,6 +100,7 @@ namespace Nodus
     void prefetch(const Batch &batch, NodeMatrix &tangent) const;
     /// The cell in @p lane of the batch at hand.
     void add_loads(unsigned int cell, unsigned int lane, bool with_tangent);
+    void add_constrained(unsigned int cell, unsigned int lane, NodeMatrix *tangent);
     void eliminate_prescribed(unsigned int cell, unsigned int lane);
     void scatter(unsigned int cell, unsigned int lane, NodeMatrix &tangent) const;
     /// Entry of the stiffness: node a, component i; node b, component k.
@@ -100,8 +108,8 @@ namespace Nodus
 
     std::vector<double> last_values; ///< displacement, time and prescribed displacements of the last sweep
     NodeMatrix         *last_tangent = nullptr;
-    // of a cell with loads
-    std::vector<double>        cell_u;
+    // of a cell with loads, or with hanging nodes
+    std::vector<double>        cell_u, cell_forces[2];
     dealii::Vector<double>     cell_internal, cell_external;
     dealii::FullMatrix<double> cell_tangent;
   };

@@ -1,12 +1,14 @@
 #ifndef nodus_contact_face_directory_h
 #define nodus_contact_face_directory_h
 
+#include <nodus/mesh/hanging_nodes.h>
 #include <nodus/types.h>
 
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/mapping.h>
 
 #include <map>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -28,11 +30,36 @@ namespace Nodus
     double       orientation;
     unsigned int pair, side, rank;
     unsigned int number; ///< in its pair and side, in the order of the cells, which does not depend on the ranks
+    unsigned int cell;   ///< active cell index on the rank that owns it
+
+    /// Node n hangs; one of the nodes that it follows.
+    struct Follower
+    {
+      unsigned int n;
+      DoFIndex     dof; ///< the first of the three
+      double       X[dim], weight;
+      double       share; ///< of the multiplier of that node at node n; 0 where it is no node of this side
+
+      template <typename Archive>
+      void serialize(Archive &archive, const unsigned int)
+      {
+        archive &n &dof &X &weight &share;
+      }
+    };
+    std::vector<Follower> followers;
+
+    bool hangs(const unsigned int n) const
+    {
+      for (const Follower &follower : followers)
+        if (follower.n == n)
+          return true;
+      return false;
+    }
 
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)
     {
-      archive &dofs &X &orientation &pair &side &rank &number;
+      archive &dofs &X &orientation &pair &side &rank &number &cell &followers;
     }
     bool operator<(const FaceRecord &other) const
     {
@@ -61,12 +88,13 @@ namespace Nodus
     {
       return size_[2 * pair + side];
     }
-    /// Faces that touch nodes of this rank.
+    /// Faces with the basis functions of nodes of this rank.
     const std::vector<FaceRecord> &at_own_nodes() const
     {
       return at_own_nodes_;
     }
-    /// Adds to @p faces of one side all that share a node with one of them, on any rank, and sorts them. Collective.
+    /// Adds to @p faces of one side all with basis functions that one of them has, on any rank, and sorts them.
+    /// Collective.
     void add_layer(std::vector<FaceRecord> &faces) const;
 
     /// Rank that owns a degree of freedom.
@@ -75,7 +103,14 @@ namespace Nodus
   private:
     using NodeKey = std::pair<unsigned int, DoFIndex>; ///< 2 pair + side, first degree of freedom
 
+    void share_multipliers();
+    /// First degrees of freedom of the nodes whose basis functions are not zero on a face: its free ones and those that
+    /// its hanging ones follow.
+    std::vector<DoFIndex> support(const FaceRecord &face) const;
+
     const dealii::DoFHandler<dim>               &dof_handler_;
+    HangingNodes                                 hanging_;
+    std::unordered_map<DoFIndex, Point>          followed_; ///< positions of the nodes that hanging ones follow
     unsigned int                                 rank_, n_face_nodes_;
     std::vector<DoFIndex>                        end_of_rank_; ///< of the ascending ranges of degrees of freedom
     std::vector<std::vector<FaceRecord>>         own_;

@@ -25,6 +25,11 @@ namespace Nodus
     std::array<DoFIndex, dim> dofs;
     Point                     X;     ///< reference position
     unsigned int              owner; ///< rank that owns its degrees of freedom
+
+    /// Of a hanging node: what it follows, indices into ContactSurfaces::nodes() and weights, and how far its reference
+    /// position is from theirs.
+    std::vector<std::pair<unsigned int, double>> masters;
+    Vector3                                      offset;
   };
 
   /// A node that carries multipliers.
@@ -45,11 +50,15 @@ namespace Nodus
   std::string pair_label(const std::vector<ContactPairParameters> &pairs, unsigned int pair);
 
   /// Divides the cells among the ranks so that those with slave faces, where contact is searched and assembled, do not
-  /// all come on top of an equal share. Collective.
+  /// all come on top of an equal share, now and whenever the mesh changes. @p mapping must outlive that. Collective.
   void
   balance_contact(const std::vector<ContactPairParameters> &pairs, const dealii::Mapping<dim> &mapping, Bodies &bodies);
 
   /// This rank's part of the slave and master surfaces of all pairs, in local numbers.
+  ///
+  /// A slave node that hangs is no slave node: it carries no multiplier and no status, the basis functions of the slave
+  /// nodes that it follows extend over it. Where a jump or a force has to do with a hanging node of either side, its
+  /// share goes to the nodes that it follows (expand()).
   ///
   /// - slave faces: of own cells, and all at the nodes of those and at own nodes. Normals and areas are complete at the
   ///   nodes of own faces and at own nodes; values that need more at the nodes beyond come from their owners, by the
@@ -77,7 +86,7 @@ namespace Nodus
     {
       return slave_faces_.size();
     }
-    /// The first are the slave nodes, in the order of slave_nodes().
+    /// The first are the slave nodes, in the order of slave_nodes(), then what else is on slave faces.
     const std::vector<SurfaceNode> &nodes() const
     {
       return nodes_;
@@ -176,6 +185,22 @@ namespace Nodus
     {
       return node < slave_nodes_.size() ? node : dealii::numbers::invalid_unsigned_int;
     }
+    /// Calls f(node, weight) for the free nodes that make up @p weight times the displacement of a node.
+    template <typename Function>
+    void expand(const unsigned int node, const double weight, const Function &f) const
+    {
+      if (nodes_[node].masters.empty())
+        f(node, weight);
+      else
+        for (const auto &[master, part] : nodes_[node].masters)
+          f(master, weight * part);
+    }
+    /// Active cell index of this rank's face @p number of a side.
+    unsigned int own_cell(const unsigned int pair, const SurfaceSide side, const unsigned int number) const
+    {
+      const auto &own = directory_.own(pair, side);
+      return own[number - own[0].number].cell;
+    }
     /// Index into nodes() by the first degree of freedom; the node must be there.
     unsigned int node(const DoFIndex first_dof) const
     {
@@ -198,7 +223,8 @@ namespace Nodus
     /// Values of a displacement-like vector (fully distributed) at all local nodes. Collective.
     void gather(const Vector &v, std::vector<Vector3> &nodal_values) const;
 
-    /// Which components of which nodes are prescribed; whenever the constraints have changed. Collective.
+    /// Which components of which nodes are prescribed, those of hanging nodes when all that they follow are; whenever
+    /// the constraints have changed. Collective.
     void set_fixed(const dealii::AffineConstraints<double> &constraints);
     bool fixed(const unsigned int node, const unsigned int component) const
     {
@@ -222,7 +248,9 @@ namespace Nodus
     void        make_layout(const dealii::IndexSet &owned_dofs);
     void        fetch(const std::vector<Vector3> &u);
     void        take_master_faces(const std::vector<FaceRecord> &records);
-    void        add_node(const FaceRecord &record, unsigned int n);
+    void        add_node(DoFIndex dof, const double *X);
+    void        add_nodes(const FaceRecord &record);
+    void        link_followers(const std::vector<FaceRecord> &records);
     SurfaceFace make_face(const FaceRecord &record) const;
     void        gather_fixed();
 
@@ -231,6 +259,7 @@ namespace Nodus
     unsigned int                               degree_, rank_;
     FaceDirectory                              directory_;
     std::vector<SurfaceNode>                   nodes_;
+    unsigned int                               n_slave_side_nodes_ = 0;
     std::unordered_map<DoFIndex, unsigned int> node_of_dof_;
     std::vector<SlaveNode>                     slave_nodes_;
     std::vector<SlavePoint>                    slave_points_;

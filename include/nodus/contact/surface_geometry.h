@@ -65,7 +65,8 @@ namespace Nodus
     Vector3 offset(unsigned int f, double xi, double eta) const;
 
     /// Averaged outward unit normal of node @p n of face @p f: of the faces at the node within 45 degrees of this one,
-    /// with weights that make it exact on spheres and cylinders (Max 1999).
+    /// with weights that make it exact on spheres and cylinders (Max 1999). At a hanging node it is interpolated, as on
+    /// the larger face beside it.
     const Vector3 &nodal_normal(const unsigned int f, const unsigned int n) const
     {
       return nodal_normals_[f * faces_[f].nodes.size() + n];
@@ -99,10 +100,23 @@ namespace Nodus
     std::vector<Point>        points_;      ///< per face, (shape_degree + 1)^2
 
     void average_normals();
-    /// Sum of the weighted normals of the faces around node n that belong to one smooth surface with face f.
-    Vector3 sum_of_normals(unsigned int f, unsigned int n) const;
+    /// Calls g(face, shape there) for the faces around a surface node that belong to one smooth
+    /// surface with a face of normal @p unit.
+    template <typename Function>
+    void for_faces(unsigned int node, const Vector3 &unit, const Function &g) const;
+    /// Sum of the weighted normals of these.
+    Vector3 sum_of_normals(unsigned int node, const Vector3 &unit) const;
+    /// The same of node n of face f; interpolated unit normals where it hangs.
+    Vector3 averaged_direction(unsigned int f, unsigned int n) const;
+    void    add_sum_derivative(unsigned int                  node,
+                               const Vector3                &unit,
+                               const dealii::Tensor<2, dim> &factor,
+                               std::vector<NodeDerivative>  &derivative) const;
     bool    on_symmetry_plane(unsigned int node, const Vector3 &normal) const;
     void    smooth();
+    /// Corner n of face f of degree 1; one that hangs is in the middle of the larger face's smoothed edge.
+    Point smoothed_corner(unsigned int f, unsigned int n) const;
+    Point smoothed_middle(unsigned int f, unsigned int a, unsigned int b) const;
   };
 } // namespace Nodus
 

@@ -34,8 +34,13 @@ namespace Nodus
     {
       return triangulation_;
     }
-    /// Divides the cells anew among the ranks, with equal sums of their weights; before anything is built on them.
-    /// Collective.
+    /// To refine and coarsen it.
+    Triangulation &triangulation()
+    {
+      return triangulation_;
+    }
+    /// Divides the cells anew among the ranks, with equal sums of their weights, now and whenever the mesh changes;
+    /// before anything is built on them. Collective.
     void balance(const std::function<unsigned int(const Triangulation::cell_iterator &)> &weight);
 
     /// The reference geometry, of @p degree per cell: that of second-order files where a body comes from one, also

@@ -1,6 +1,11 @@
 #ifndef nodus_mesh_expression_h
 #define nodus_mesh_expression_h
 
+#include <nodus/types.h>
+
+#include <deal.II/base/function_parser.h>
+
+#include <memory>
 #include <string>
 
 namespace Nodus
@@ -8,6 +13,9 @@ namespace Nodus
   /// muParser's complaint about @p expression of @p variables ("x,y,z", and perhaps a fourth one; constant pi), empty
   /// when it is fine.
   std::string expression_complaint(const std::string &expression, const std::string &variables);
+
+  /// A number of x, y, z that expression_complaint() has found fine.
+  std::unique_ptr<dealii::FunctionParser<dim>> parse_expression(const std::string &expression);
 } // namespace Nodus
 
 #endif

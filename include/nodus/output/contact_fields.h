@@ -3,6 +3,8 @@
 
 #include <nodus/types.h>
 
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace Nodus
@@ -12,7 +14,8 @@ namespace Nodus
   {
     std::string name; ///< of the pair
 
-    /// Slave surface: one entry per slave node of the pair.
+    /// Slave surface: one entry per slave node of the pair; behind them nodes that hang, with area 0, which carry
+    /// nothing of their own.
     std::vector<Point>         X;                ///< reference position
     std::vector<Vector3>       displacement;     ///<
     std::vector<double>        pressure;         ///< CPRESS = -lambda_bar >= 0 in compression [pressure]
@@ -38,6 +41,11 @@ namespace Nodus
 
     /// Adds node @p i of @p other.
     void append(const ContactFields &other, unsigned int i);
+    /// Adds a node that hangs between others, given by place and weight.
+    void interpolate(const std::vector<std::pair<unsigned int, double>> &others,
+                     const Point                                        &X_hanging,
+                     const Vector3                                      &u,
+                     DoFIndex                                            number_hanging);
 
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)

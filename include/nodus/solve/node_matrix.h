@@ -67,8 +67,9 @@ namespace Nodus
     MPI_Comm                                    communicator_;
     std::vector<DoFIndex>                       start_; ///< of each rank's nodes, and the number of all
     DoFIndex                                    first_;
-    unsigned int                                n_owned_, n_base_ghosts_;
-    std::vector<DoFIndex>                       ghosts_; ///< of the base, then the others, either ascending
+    unsigned int                                n_owned_;
+    std::vector<DoFIndex>                       ghosts_; ///< of the base, then the others, ascending in each part
+    std::vector<unsigned int>                   end_of_part_;
     std::unique_ptr<Epetra_Map>                 row_map_, column_map_;
     std::unique_ptr<Epetra_Import>              import_; ///< null when no rank has ghosts
     mutable std::unique_ptr<Epetra_MultiVector> values_;
@@ -126,8 +127,11 @@ namespace Nodus
       std::uint32_t                  code_   = invalid;
     };
 
-    /// Couples all nodes of each cell. @param cell_nodes local numbers of @p map, @p n per cell.
-    void reinit(std::shared_ptr<const NodeMap> map, const std::vector<unsigned int> &cell_nodes, unsigned int n);
+    /// Couples all nodes of each group, those of a cell for example. @param group_nodes local numbers of @p map, group
+    /// after group. @param group_end where each group ends.
+    void reinit(std::shared_ptr<const NodeMap>   map,
+                const std::vector<unsigned int> &group_nodes,
+                const std::vector<std::size_t>  &group_end);
     /// @param add_columns called as add_columns(i, columns) in the order of the owned nodes: appends to @p columns the
     /// local nodes j > i that node i is coupled with, in any order, also more than once.
     void reinit(std::shared_ptr<const NodeMap>                                                 map,

@@ -1,0 +1,107 @@
+// A block pressed on a larger one and dragged while the mesh is refined and coarsened after each increment. The contact
+// balances, the friction is mu times the pressing force where all slips (V = 25 from a pressure of 25 on the unit
+// square), a change of the mesh leaves the forces of these coarse meshes as they are to 1 %, and the same meshes and
+// forces arise on any number of ranks and after a restart.
+
+#include "../cases.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <filesystem>
+#include <sstream>
+
+using namespace Cases;
+
+namespace
+{
+  Parameters dragged_block(const ContactPairParameters::Scheme scheme, const std::string &folder)
+  {
+    Parameters p;
+    p.bodies                  = {box("lower", "6,4,2", {-0.5, -0.25, -1}, {1.75, 1.25, 0}, 4000, 0.3),
+                                 box("upper", "3,3,3", {0, 0, 0}, {1, 1, 1}, 2000, 0.3)};
+    p.boundary_conditions     = {hold("ground", region(1, {z_minus}), {0, 1, 2}),
+                                 press("weight", region(2, {z_plus}), "25*min(1, 4*t)"),
+                                 drive("drag", region(2, {z_plus}), 0, "0.16*max(0, t-0.25)"),
+                                 hold("guide", region(2, {z_plus}), {1})};
+    p.contact_pairs           = {pair(region(2, {z_minus}), region(1, {z_plus}), 0.3)};
+    p.contact_pairs[0].scheme = scheme;
+    if (scheme == ContactPairParameters::Scheme::integration_point)
+      p.contact_pairs[0].friction_coefficient = 0.;
+    p.contact_pairs[0].initial_status = ContactPairParameters::InitialStatus::closed;
+    p.contact_pairs[0].normal         = ContactPairParameters::Normal::averaged;
+    p.load_stepping.increments        = {8};
+    p.newton.force_tolerance          = 1e-11;
+    p.adaptivity.interval             = 1;
+    p.adaptivity.maximum_level        = 1;
+    p.adaptivity.refine_fraction      = 0.5;
+    p.adaptivity.coarsen_fraction     = 0.1;
+    p.output.results_folder           = folder;
+    p.output.write_vtu                = false;
+    p.output.checkpoint_interval      = 5;
+    return p;
+  }
+
+  struct Run
+  {
+    std::vector<Vector3>      force;
+    std::vector<unsigned int> slave_nodes;
+    double                    largest_change = 0.; ///< of the contact force with the mesh, per cent
+    double                    unbalanced     = 0.;
+  };
+
+  Run follow(const Parameters &p, const bool restart = false)
+  {
+    Run                result;
+    std::ostringstream log;
+    ContactProblem     problem(p, world(), log);
+    if (restart)
+      problem.restart();
+    problem.on_increment(
+        [&](const unsigned int, const double)
+        {
+          const auto &r = problem.contact_resultants()[0];
+          result.force.push_back(r.slave_force);
+          result.slave_nodes.push_back(r.open + r.slip + r.stick);
+          result.unbalanced = std::max(result.unbalanced, (r.slave_force + r.master_force).norm() / 25.);
+        });
+    problem.run();
+    const std::string text = log.str(), words = "changes by ";
+    for (std::size_t at = text.find("the contact force of"); at != std::string::npos;
+         at             = text.find("the contact force of", at + 1))
+      result.largest_change =
+          std::max(result.largest_change, std::stod(text.substr(text.find(words, at) + words.size())));
+    if (std::getenv("NODUS_TEST_LOG") != nullptr && root())
+      std::cout << text << std::endl;
+    return result;
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  using Scheme                                    = ContactPairParameters::Scheme;
+  const std::pair<Scheme, const char *> schemes[] = {
+      {Scheme::averaged, "averaged"}, {Scheme::nodal, "nodal"}, {Scheme::integration_point, "integration points"}};
+  for (const auto &[scheme, name] : schemes)
+  {
+    const Run run = follow(dragged_block(scheme, "mid_path_results"));
+    if (root())
+    {
+      std::cout << name << ":" << std::endl << std::setprecision(9);
+      for (unsigned int i = 0; i < run.force.size(); ++i)
+        std::cout << "  " << run.slave_nodes[i] << " sites, force " << run.force[i][0] << " " << run.force[i][2]
+                  << std::endl;
+    }
+    check("  pressing force", run.force.back()[2], 25., 1e-6);
+    if (scheme != Scheme::integration_point)                      // frictionless
+      check("  friction", run.force.back()[0], -0.3 * 25., 5e-3); // it slips aside a little, too
+    check("  force out of balance", run.unbalanced, 0., 1e-10, 1.);
+    check("  largest change of the force with the mesh, per cent", run.largest_change, 0., 1., 1.);
+    check("  the mesh changes", run.slave_nodes.front() != run.slave_nodes.back());
+    if (scheme != Scheme::averaged)
+      continue;
+    const Run again = follow(dragged_block(scheme, "mid_path_results"), true);
+    check("  restart: friction at the end", again.force.back()[0], run.force.back()[0], 1e-8);
+    check("  restart: the same mesh", again.slave_nodes.back() == run.slave_nodes.back());
+  }
+}
