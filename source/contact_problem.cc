@@ -58,8 +58,9 @@ namespace Nodus
     for (unsigned int p = 0; p < parameters.contact_pairs.size(); ++p)
     {
       const auto &pair = parameters.contact_pairs[p];
-      stiffness.push_back(std::min(materials[pair.slave.body - 1]->youngs_modulus(),
-                                   materials[pair.master.body - 1]->youngs_modulus()));
+      stiffness.push_back(materials[pair.slave.body - 1]->youngs_modulus());
+      if (!pair.has_rigid_master())
+        stiffness[p] = std::min(stiffness[p], materials[pair.master.body - 1]->youngs_modulus());
       augmentation.push_back(pair.normal_augmentation_factor * stiffness[p] / surfaces->face_size(p));
     }
     status  = std::make_unique<Status>(parameters.contact_pairs, *surfaces, augmentation, stiffness);
@@ -135,8 +136,12 @@ namespace Nodus
     {
       std::ostringstream line;
       line << "  contact pair " << p + 1 << in_brackets(parameters.contact_pairs[p].name) << ": "
-           << surfaces->n_faces(p, slave_side) << " slave faces on " << surfaces->n_faces(p, master_side)
-           << " master faces, mean slave face size " << surfaces->face_size(p);
+           << surfaces->n_faces(p, slave_side) << " slave faces on ";
+      if (const auto &pair = parameters.contact_pairs[p]; pair.has_rigid_master())
+        line << "a rigid " << text_of(pair.master_surface.shape);
+      else
+        line << surfaces->n_faces(p, master_side) << " master faces";
+      line << ", mean slave face size " << surfaces->face_size(p);
       console.line(line.str());
     }
   }

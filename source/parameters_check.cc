@@ -28,7 +28,7 @@ namespace Nodus
       }
     };
 
-    /// @p variables: "x,y,z", and perhaps a fourth one.
+    /// @p variables: "x,y,z", and perhaps a fourth one, or "t" alone.
     void check_expression(const Section     &section,
                           const std::string &key,
                           const std::string &text,
@@ -37,8 +37,11 @@ namespace Nodus
       const std::string problem = expression_complaint(text, variables);
       section.require(problem.empty(),
                       key,
-                      "has the expression '" + text + "' that does not parse: " + problem + "; variables are x, y, z" +
-                          (variables.size() > 5 ? std::string(", ") + variables.back() : "") + ", constants pi");
+                      "has the expression '" + text + "' that does not parse: " + problem +
+                          (variables == "t" ? "; the variable is t"
+                                            : "; variables are x, y, z" +
+                                                  (variables.size() > 5 ? std::string(", ") + variables.back() : "")) +
+                          ", constants pi");
     }
 
     void check_ogden(const Section &section, const MaterialParameters &material)
@@ -260,6 +263,83 @@ namespace Nodus
         check_expression(section, "Friction factor", pair.friction_factor, "x,y,z,v");
     }
 
+    /// @p axis: about which the motion turns where it names none.
+    void check(const Section                    &section,
+               const PrescribedMotionParameters &motion,
+               const std::string                &prefix,
+               const Vector3                    &axis)
+    {
+      section.require(motion.translation.size() == dim,
+                      prefixed(prefix, "Translation"),
+                      "has " + std::to_string(motion.translation.size()) +
+                          " expressions; give three, separated by ';', for example 0; 0; -0.1*t");
+      for (const std::string &expression : motion.translation)
+        check_expression(section, prefixed(prefix, "Translation"), expression, "t");
+      check_expression(section, prefixed(prefix, "Rotation"), motion.rotation, "t");
+      section.require(motion.rotation == "0" || (motion.rotation_axis + axis).norm() > 0.,
+                      prefixed(prefix, "Rotation axis"),
+                      "must not be zero when there is a Rotation; give a direction such as 0, 0, 1");
+      section.require(motion.rotation_centre.empty() || motion.rotation_centre.size() == dim,
+                      prefixed(prefix, "Rotation centre"),
+                      "has " + std::to_string(motion.rotation_centre.size()) + " numbers; give three, or none");
+    }
+
+    bool is_given(const PrescribedMotionParameters &motion)
+    {
+      const PrescribedMotionParameters none;
+      return motion.translation != none.translation || motion.rotation != none.rotation ||
+             motion.rotation_axis != none.rotation_axis || !motion.rotation_centre.empty();
+    }
+
+    void check_master(const Section &section, const ContactPairParameters &pair, const unsigned int n_bodies)
+    {
+      using Shape         = MasterSurfaceParameters::Shape;
+      const auto &surface = pair.master_surface;
+      if (!pair.has_rigid_master())
+      {
+        check(section, pair.master, "Master ", n_bodies, 1);
+        section.require(!pair.master.boundary_ids.empty(),
+                        "Master boundary ids",
+                        "is missing; give the boundary ids of the faces in contact");
+        section.require(!share_faces(pair.slave, pair.master),
+                        "Master boundary ids",
+                        "names faces that are slaves of the same pair; give the two sides different bodies or ids");
+        for (const auto &[key, given] : {std::make_pair("Master point", surface.point != Point()),
+                                         std::make_pair("Master axis", surface.axis != Vector3()),
+                                         std::make_pair("Master radius", surface.radius != 0.),
+                                         std::make_pair("Master cavity", surface.cavity),
+                                         std::make_pair("Master translation", is_given(surface.motion))})
+          section.require(
+              !given,
+              key,
+              "and the like have no effect on a meshed master; remove them, or set Master surface to plane, "
+              "sphere, cylinder or paraboloid");
+        return;
+      }
+      const std::string shape = text_of(surface.shape);
+      for (const auto &[key, given] : {std::make_pair("Master body", pair.master.body != 0),
+                                       std::make_pair("Master boundary ids", !pair.master.boundary_ids.empty()),
+                                       std::make_pair("Master where", !pair.master.where.empty())})
+        section.require(!given,
+                        key,
+                        "has no meaning besides 'Master surface = " + shape +
+                            "', which has no mesh; remove one of the two");
+      const bool plane = surface.shape == Shape::plane, sphere = surface.shape == Shape::sphere;
+      section.require(plane || surface.radius > 0., "Master radius", "must be given and > 0 for a " + shape);
+      section.require(!plane || surface.radius == 0., "Master radius", "has no meaning for a plane; remove it");
+      section.require(
+          !plane || !surface.cavity,
+          "Master cavity",
+          "has no meaning for a plane; remove it, the body is on the side that Master axis points away from");
+      section.require(sphere || surface.axis.norm() > 0.,
+                      "Master axis",
+                      std::string("must be given and not zero: ") +
+                          (surface.shape == Shape::cylinder ? "the direction of the cylinder"
+                                                            : "the normal out of the rigid body") +
+                          ", for example 0, 0, 1");
+      check(section, surface.motion, "Master ", surface.motion.rotation_axis == Vector3() ? surface.axis : Vector3());
+    }
+
     void check(const Section &section, const ContactPairParameters &pair, const unsigned int n_bodies)
     {
       check_friction(section, pair);
@@ -268,14 +348,11 @@ namespace Nodus
       section.require(adjusts || pair.adjustment_distance == 0.,
                       "Adjustment distance",
                       "has no effect; set 'Initial overclosure = strain-free adjust', or remove it");
-      const std::string missing = "is missing; give the boundary ids of the faces in contact";
       check(section, pair.slave, "Slave ", n_bodies, 1);
-      section.require(!pair.slave.boundary_ids.empty(), "Slave boundary ids", missing);
-      check(section, pair.master, "Master ", n_bodies, 1);
-      section.require(!pair.master.boundary_ids.empty(), "Master boundary ids", missing);
-      section.require(!share_faces(pair.slave, pair.master),
-                      "Master boundary ids",
-                      "names faces that are slaves of the same pair; give the two sides different bodies or ids");
+      section.require(!pair.slave.boundary_ids.empty(),
+                      "Slave boundary ids",
+                      "is missing; give the boundary ids of the faces in contact");
+      check_master(section, pair, n_bodies);
 
       using Scheme = ContactPairParameters::Scheme;
       using Rule   = ContactPairParameters::QuadratureRule;

@@ -132,7 +132,7 @@ namespace Nodus
       using Scheme = ContactPairParameters::Scheme;
       std::ostringstream text;
       text << text_of(pair.scheme) << " scheme"
-           << (pair.scheme == Scheme::averaged ? ", by " + text_of(pair.integration) : "") << ", "
+           << (pair.scheme == Scheme::averaged ? ", by " + text_of(pair.applied_integration()) : "") << ", "
            << text_of(pair.surface) << " surface, ";
       using Pair = ContactPairParameters;
       if (pair.contact_law != Pair::ContactLaw::unilateral)
