@@ -42,6 +42,14 @@ namespace
     print(name + " where", region.where);
   }
 
+  void print(const std::string &name, const PrescribedMotionParameters &motion)
+  {
+    print(name + " translation", motion.translation);
+    print(name + " rotation", motion.rotation);
+    print(name + " rotation axis", motion.rotation_axis);
+    print(name + " rotation centre", motion.rotation_centre);
+  }
+
   void print(const BodyParameters &body)
   {
     print("\nbody", body.name);
@@ -86,6 +94,12 @@ namespace
     print("\ncontact pair", pair.name);
     print("slave", pair.slave);
     print("master", pair.master);
+    print_choice("master surface", pair.master_surface.shape);
+    print("master point", pair.master_surface.point);
+    print("master axis", pair.master_surface.axis);
+    print("master radius", pair.master_surface.radius);
+    print("master cavity", pair.master_surface.cavity);
+    print("master", pair.master_surface.motion);
     print_choice("contact law", pair.contact_law);
     print_choice("friction law", pair.friction_law);
     print("friction coefficient", pair.friction_coefficient);
