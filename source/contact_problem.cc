@@ -1,3 +1,4 @@
+#include <nodus/bulk/rigid_material.h>
 #include <nodus/contact/tractions.h>
 #include <nodus/contact_problem_implementation.h>
 #include <nodus/output/complete_file.h>
@@ -18,8 +19,16 @@ namespace Nodus
     std::vector<std::unique_ptr<Material>> make_materials(const std::vector<BodyParameters> &bodies)
     {
       std::vector<std::unique_ptr<Material>> materials;
+      double                                 stiffest = 0.; // with its modulus a rigid body changes no scale
       for (const auto &body : bodies)
-        materials.push_back(make_material(body.material));
+      {
+        materials.push_back(body.rigid ? nullptr : make_material(body.material));
+        if (!body.rigid)
+          stiffest = std::max(stiffest, materials.back()->youngs_modulus());
+      }
+      for (auto &material : materials)
+        if (!material)
+          material = std::make_unique<RigidMaterial>(stiffest);
       return materials;
     }
 
@@ -42,11 +51,15 @@ namespace Nodus
       balance_contact(parameters.contact_pairs, *mapping, bodies);
     dof_handler.distribute_dofs(fe);
     dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
-    boundary_conditions = std::make_unique<BoundaryConditions>(
-        parameters.boundary_conditions, bodies, dof_handler, *mapping, parameters.load_stepping.interval_ends);
+    boundary_conditions = std::make_unique<BoundaryConditions>(parameters.boundary_conditions,
+                                                               bodies,
+                                                               dof_handler,
+                                                               *mapping,
+                                                               parameters.load_stepping.interval_ends,
+                                                               parameters.bodies);
     std::vector<BodyParameters::VolumetricTreatment> treatments;
     for (const auto &body : parameters.bodies)
-      treatments.push_back(body.volumetric_treatment);
+      treatments.push_back(body.rigid ? BodyParameters::VolumetricTreatment::standard : body.volumetric_treatment);
     solid =
         std::make_unique<SolidAssembler>(dof_handler, *mapping, materials, boundary_conditions->loads(), treatments);
     stabilisation = std::make_unique<ViscousStabilisation>(

@@ -134,20 +134,21 @@ namespace Nodus
     add_expressions(prm,
                     prefixed(prefix, "Translation"),
                     motion.translation,
-                    "Where it has moved to by time t [length]: three expressions of t, separated by ';'.");
-    prm.add_parameter(prefixed(prefix, "Rotation"),
-                      motion.rotation,
-                      "Angle that it has turned by at time t [degrees]: expression of t, e.g. 90*t; before the "
-                      "translation.",
-                      Patterns::Anything());
+                    "Shift of the rigid body at time t [length]: three expressions of t, separated by ';'.");
+    prm.add_parameter(
+        prefixed(prefix, "Rotation"),
+        motion.rotation,
+        "Angle by which the rigid body has turned at time t, before the translation [degrees]: expression "
+        "of t, e.g. 90*t.",
+        Patterns::Anything());
     prm.add_parameter(prefixed(prefix, "Rotation axis"),
                       motion.rotation_axis,
-                      "Direction about which it turns [-], right-handed; three numbers" + axis + ".");
-    prm.add_parameter(prefixed(prefix, "Rotation centre"),
-                      motion.rotation_centre,
-                      "Point that the rotation leaves where it is, at t = 0 [length]; three numbers, empty: " + centre +
-                          ".",
-                      numbers);
+                      "Axis about which the rigid body turns, right-handed [-]; three numbers" + axis + ".");
+    prm.add_parameter(
+        prefixed(prefix, "Rotation centre"),
+        motion.rotation_centre,
+        "Point that the rotation of the rigid body leaves where it is [length]; three numbers, empty: " + centre + ".",
+        numbers);
   }
 
   /// A rigid surface instead of a meshed master.

@@ -194,8 +194,11 @@ namespace Nodus
       std::ostringstream text;
       text << "  body " << b + 1 << " (" << p.bodies.name(b) << "): " << counted(cells[b], "cell") << ", " << size[0]
            << " x " << size[1] << " x " << size[2] << " from " << coordinates(ends.first) << " to "
-           << coordinates(ends.second) << ", boundary ids " << joined(p.bodies.boundary_ids(b), ", ") << "; "
-           << text_of(material.law) << ", E = " << material.youngs_modulus << ", nu = " << material.poissons_ratio;
+           << coordinates(ends.second) << ", boundary ids " << joined(p.bodies.boundary_ids(b), ", ") << "; ";
+      if (parameters.bodies[b].rigid)
+        text << "rigid";
+      else
+        text << text_of(material.law) << ", E = " << material.youngs_modulus << ", nu = " << material.poissons_ratio;
       p.console.line(text.str());
     }
 

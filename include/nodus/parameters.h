@@ -104,7 +104,10 @@ namespace Nodus
     Vector3                   translation; ///< applied after scale and rotation [length]
     unsigned int              global_refinement    = 0;
     VolumetricTreatment       volumetric_treatment = VolumetricTreatment::standard;
-    MaterialParameters        material;
+    MaterialParameters        material; ///< of a body that is not rigid
+
+    bool                       rigid = false;
+    PrescribedMotionParameters motion; ///< of a rigid body; keys "Rigid translation", ...
   };
 
   struct BoundaryConditionParameters

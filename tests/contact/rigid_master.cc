@@ -4,10 +4,13 @@
 // - on a plane that turns under them: the moment of friction; tied to it: the rigid motion of the plane, without force;
 // - shells pressed on by cylinders and spheres inside and outside: the pressures of Lame.
 
+#include <nodus/signals.h>
+
 #include "../cases.h"
 
 #include <deal.II/base/mpi.h>
 
+#include <csignal>
 #include <fstream>
 
 using namespace Cases;
@@ -238,11 +241,56 @@ namespace
           pressure,
           1e-2);
   }
+  /// A cube on a plane that slides and turns: the run that is stopped after increment 3 and continued is the other one.
+  void check_restart(const Scheme scheme)
+  {
+    Parameters p          = case_of("restart");
+    p.bodies              = {box("cube", "2,2,2", {0, 0, 0}, {1, 1, 1}, 1000, 0.3)};
+    p.boundary_conditions = {
+        condition("top", Type::displacement, region(1, {z_plus}), {0, 1, 2}, {"0", "0", "-0.01*min(t,1)"})};
+    p.contact_pairs          = {on_rigid(Shape::plane, region(1, {z_minus}), scheme, 0.2)};
+    auto &plane              = p.contact_pairs[0].master_surface;
+    plane.axis               = Vector3({0., 0., 1.});
+    plane.motion.translation = {"0.003*t", "0", "0.001*t"};
+    plane.motion.rotation    = "t";
+    p.load_stepping          = {{1., 2.}, {1, 4}};
+    std::vector<Vector3> force, moment;
+    for (const bool stops : {false, true})
+    {
+      if (stops)
+      {
+        ContactProblem first(p, world(), log());
+        first.on_increment(
+            [](const unsigned int increment, const double)
+            {
+              if (increment == 3)
+                std::raise(SIGTERM);
+            });
+        try
+        {
+          first.run();
+          check("stopped", false);
+        }
+        catch (const Interrupted &)
+        {
+        }
+      }
+      ContactProblem problem(p, world(), log());
+      if (stops)
+        problem.restart();
+      problem.run();
+      force.push_back(problem.contact_resultants()[0].master_force);
+      moment.push_back(problem.contact_resultants()[0].master_moment);
+    }
+    check("restart, " + text_of(scheme) + ": force", (force[1] - force[0]).norm(), 0., 1e-8, force[0].norm());
+    check("  moment", (moment[1] - moment[0]).norm(), 0., 1e-8, moment[0].norm());
+  }
 } // namespace
 
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  Signals::install();
   for (const auto &[name, scheme] : schemes)
   {
     for (const bool loops : {false, true})
@@ -252,6 +300,7 @@ int main(int argc, char **argv)
       check_tied(name, scheme, loops);
     }
     check_turned(name, scheme);
+    check_restart(scheme);
     for (const bool cavity : {false, true})
     {
       check_shell(Shape::cylinder, cavity, scheme);

@@ -64,6 +64,8 @@ namespace
     print("translation", body.translation);
     print("global refinement", body.global_refinement);
     print_choice("volumetric treatment", body.volumetric_treatment);
+    print("rigid", body.rigid);
+    print("rigid", body.motion);
     print_choice("law", body.material.law);
     print("Young's modulus", body.material.youngs_modulus);
     print("Poisson's ratio", body.material.poissons_ratio);
