@@ -1,3 +1,4 @@
+#include <nodus/bulk/rigid_material.h>
 #include <nodus/contact/tractions.h>
 #include <nodus/contact_problem_implementation.h>
 #include <nodus/output/complete_file.h>
@@ -18,8 +19,16 @@ namespace Nodus
     std::vector<std::unique_ptr<Material>> make_materials(const std::vector<BodyParameters> &bodies)
     {
       std::vector<std::unique_ptr<Material>> materials;
+      double                                 stiffest = 0.; // with its modulus a rigid body changes no scale
       for (const auto &body : bodies)
-        materials.push_back(make_material(body.material));
+      {
+        materials.push_back(body.rigid ? nullptr : make_material(body.material));
+        if (!body.rigid)
+          stiffest = std::max(stiffest, materials.back()->youngs_modulus());
+      }
+      for (auto &material : materials)
+        if (!material)
+          material = std::make_unique<RigidMaterial>(stiffest);
       return materials;
     }
 
@@ -51,11 +60,15 @@ namespace Nodus
     dof_handler.distribute_dofs(fe);
     relevant.clear();
     dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
-    boundary_conditions = std::make_unique<BoundaryConditions>(
-        parameters.boundary_conditions, bodies, dof_handler, *mapping, parameters.load_stepping.interval_ends);
+    boundary_conditions = std::make_unique<BoundaryConditions>(parameters.boundary_conditions,
+                                                               bodies,
+                                                               dof_handler,
+                                                               *mapping,
+                                                               parameters.load_stepping.interval_ends,
+                                                               parameters.bodies);
     std::vector<BodyParameters::VolumetricTreatment> treatments;
     for (const auto &body : parameters.bodies)
-      treatments.push_back(body.volumetric_treatment);
+      treatments.push_back(body.rigid ? BodyParameters::VolumetricTreatment::standard : body.volumetric_treatment);
     solid =
         std::make_unique<SolidAssembler>(dof_handler, *mapping, materials, boundary_conditions->loads(), treatments);
     stabilisation = std::make_unique<ViscousStabilisation>(
@@ -98,8 +111,11 @@ namespace Nodus
   {
     std::vector<double> stiffness;
     for (const auto &pair : parameters.contact_pairs)
-      stiffness.push_back(std::min(materials[pair.slave.body - 1]->youngs_modulus(),
-                                   materials[pair.master.body - 1]->youngs_modulus()));
+    {
+      stiffness.push_back(materials[pair.slave.body - 1]->youngs_modulus());
+      if (!pair.has_rigid_master())
+        stiffness.back() = std::min(stiffness.back(), materials[pair.master.body - 1]->youngs_modulus());
+    }
     return stiffness;
   }
 
@@ -166,8 +182,12 @@ namespace Nodus
     {
       std::ostringstream line;
       line << "  contact pair " << p + 1 << in_brackets(parameters.contact_pairs[p].name) << ": "
-           << surfaces->n_faces(p, slave_side) << " slave faces on " << surfaces->n_faces(p, master_side)
-           << " master faces, mean slave face size " << surfaces->face_size(p);
+           << surfaces->n_faces(p, slave_side) << " slave faces on ";
+      if (const auto &pair = parameters.contact_pairs[p]; pair.has_rigid_master())
+        line << "a rigid " << text_of(pair.master_surface.shape);
+      else
+        line << surfaces->n_faces(p, master_side) << " master faces";
+      line << ", mean slave face size " << surfaces->face_size(p);
       console.line(line.str());
     }
   }

@@ -85,7 +85,8 @@ namespace Nodus
       double                      dissipation = 0.;
       for (unsigned int i = 0; i < 2; ++i)
         dissipation -= force * pairing[s].tangent[i] * slip[i];
-      sums[2] += 0.5 * ((committed_site_force[s] + force) * n) * (n * jump.jump(s, state.increment));
+      sums[0] += 0.5 * (committed_site_force[s] + force) * jump.rigid(s).moved;
+      sums[2] += 0.5 * ((committed_site_force[s] + force) * n) * (n * jump.jump_of_increment(s, state.increment));
       sums[4] += dissipation;
       if (dissipation < -negligible)
         creating.push_back(s);

@@ -34,7 +34,20 @@ namespace Nodus
     return name.empty() ? "" : " (" + name + ")";
   }
 
-  /// Freezes the geometry: projections, frames, jump operator and surface weights at the current positions.
+  /// Projections, frames, jump operator and surface weights at the current positions.
+  void ContactProblem::Implementation::freeze_geometry()
+  {
+    const auto              &pairs = parameters.contact_pairs;
+    const std::vector<Point> X     = surfaces->positions(std::vector<Vector3>(surfaces->nodes().size()));
+    paired_at                      = state.x;
+    geometry                       = std::make_unique<ContactGeometry>(pairs, *surfaces, paired_at);
+    averaged.compute(pairs, *surfaces, *geometry, paired_at, X);
+    pairing.project(pairs, *surfaces, *geometry, averaged);
+    jump.build(pairs, *surfaces, *geometry, pairing, averaged);
+    weights.compute(pairs, *surfaces, averaged, paired_at, X);
+  }
+
+  /// Freezes the geometry at the current positions and carries statuses and multipliers over.
   void ContactProblem::Implementation::pair_surfaces()
   {
     const auto    timer  = profile.time(Phase::pairing);
@@ -45,23 +58,24 @@ namespace Nodus
     u_before_geometry = u_geometry;
     u_geometry        = solution.block(0);
 
-    const auto              &pairs = parameters.contact_pairs;
-    const std::vector<Point> X     = surfaces->positions(std::vector<Vector3>(surfaces->nodes().size()));
-    paired_at                      = state.x;
-    geometry                       = std::make_unique<ContactGeometry>(pairs, *surfaces, paired_at);
-    averaged.compute(pairs, *surfaces, *geometry, paired_at, X);
-    pairing.project(pairs, *surfaces, *geometry, averaged);
-    jump.build(pairs, *surfaces, *geometry, pairing, averaged);
-    weights.compute(pairs, *surfaces, averaged, paired_at, X);
-
     if (!paired_before)
     {
+      // the first statuses are those before anything has moved, rigid masters included
+      surfaces->move_rigid_masters(0., 0.);
+      freeze_geometry();
       start_contact();
       paired_before     = true;
       committed_pairing = pairing;
       committed_area = nodal_area = weights.area();
+      surfaces->move_rigid_masters(path.time(), time);
+      if (surfaces->has_rigid_masters())
+      {
+        freeze_geometry();
+        status->inherit(pairing);
+      }
       return;
     }
+    freeze_geometry();
     status->inherit(pairing);
 
     // Lambda keeps its direction in space and its length in the new tangent planes, lambda the nodal force; nodes

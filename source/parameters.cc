@@ -67,29 +67,8 @@ namespace Nodus
                      });
     }
 
-    Patterns::List anything_separated_by(const std::string &separator)
-    {
-      return Patterns::List(Patterns::Anything(), 0, std::numeric_limits<unsigned int>::max(), separator);
-    }
-
-    /// Expressions separated by ';' because commas belong to the expressions: if(t<1, t, 1).
-    void add_expressions(ParameterHandler         &prm,
-                         const std::string        &key,
-                         std::vector<std::string> &expressions,
-                         const std::string        &documentation)
-    {
-      std::string default_text;
-      for (const std::string &expression : expressions)
-        default_text += (default_text.empty() ? "" : "; ") + expression;
-      prm.declare_entry(key, default_text, anything_separated_by(";"), documentation);
-      prm.add_action(key,
-                     [&expressions](const std::string &text)
-                     { expressions = dealii::Utilities::split_string_list(text, ';'); });
-    }
-
     void add(ParameterHandler &prm, MaterialParameters &material)
     {
-      const Patterns::List numbers(any_number, 0, std::numeric_limits<unsigned int>::max(), ",");
       add_choice(
           prm,
           "Law",
@@ -198,6 +177,10 @@ namespace Nodus
           "How the change of volume is integrated [-]: standard, at each point; mean dilatation, as the constant "
           "(Degree = 1) or linear (Degree = 2) mean in each cell, which does not lock where the material is "
           "nearly incompressible: rubber, metal that yields.");
+      prm.add_parameter("Rigid",
+                        body.rigid,
+                        "Whether the body is rigid and moves as the following keys say; it has no material [-].");
+      add_motion(prm, "Rigid ", body.motion, "", "the origin");
       prm.enter_subsection("Material");
       add(prm, body.material);
       prm.leave_subsection();

@@ -1,6 +1,4 @@
-#include <nodus/mesh/expression.h>
-#include <nodus/parameter_file.h>
-#include <nodus/parameters.h>
+#include <nodus/parameter_checks.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -15,31 +13,11 @@ namespace Nodus
 {
   namespace
   {
-    /// A subsection under inspection.
-    struct Section
-    {
-      const ParameterFile &file;
-      std::string          name;
-
-      void require(const bool satisfied, const std::string &key, const std::string &message) const
-      {
-        if (!satisfied)
-          file.refuse(name, key, message);
-      }
-    };
-
-    /// @p variables: "x,y,z", and perhaps a fourth one.
-    void check_expression(const Section     &section,
-                          const std::string &key,
-                          const std::string &text,
-                          const std::string &variables)
-    {
-      const std::string problem = expression_complaint(text, variables);
-      section.require(problem.empty(),
-                      key,
-                      "has the expression '" + text + "' that does not parse: " + problem + "; variables are x, y, z" +
-                          (variables.size() > 5 ? std::string(", ") + variables.back() : "") + ", constants pi");
-    }
+    using ParameterChecks::check;
+    using ParameterChecks::check_expression;
+    using ParameterChecks::is_given;
+    using ParameterChecks::Section;
+    using ParameterChecks::share_faces;
 
     void check_ogden(const Section &section, const MaterialParameters &material)
     {
@@ -152,21 +130,22 @@ namespace Nodus
                       "and Local refinement go together; give both or none");
       if (!body.refine_where.empty())
         check_expression(section, "Refine where", body.refine_where, "x,y,z");
-      check({section.file, section.name + "/Material"}, body.material);
-    }
-
-    void check(const Section          &section,
-               const RegionParameters &region,
-               const std::string      &prefix,
-               const unsigned int      n_bodies,
-               const unsigned int      smallest_body)
-    {
-      const std::string choice = (smallest_body == 0 ? "0 (every body) to " : "1 to ") + std::to_string(n_bodies);
-      section.require(region.body >= smallest_body && region.body <= n_bodies,
-                      prefixed(prefix, "Body"),
-                      "is " + std::to_string(region.body) + "; give the number of a body, " + choice);
-      if (!region.where.empty())
-        check_expression(section, prefixed(prefix, "Where"), region.where, "x,y,z");
+      if (!body.rigid)
+      {
+        section.require(!is_given(body.motion),
+                        "Rigid translation",
+                        "and the like have no effect on a body that is not rigid; remove them, or set 'Rigid = true'");
+        check({section.file, section.name + "/Material"}, body.material);
+        return;
+      }
+      check(section, body.motion, "Rigid ", Vector3());
+      section.require(body.volumetric_treatment == BodyParameters::VolumetricTreatment::standard,
+                      "Volumetric treatment",
+                      "has no effect on a rigid body; remove it");
+      Section{section.file, section.name + "/Material"}.require(
+          body.material.youngs_modulus == 0. && body.material.ogden_moduli.empty(),
+          "Young's modulus",
+          "has no meaning for a rigid body; remove the material, or 'Rigid = true'");
     }
 
     void check(const Section                     &section,
@@ -214,87 +193,6 @@ namespace Nodus
       section.require(condition.active_until == 0. || condition.active_until > condition.active_from,
                       "Active until",
                       "is not after Active from; the condition would never act");
-    }
-
-    bool share_faces(const RegionParameters &a, const RegionParameters &b)
-    {
-      const auto in_b = [&b](const dealii::types::boundary_id id)
-      { return std::count(b.boundary_ids.begin(), b.boundary_ids.end(), id) > 0; };
-      // Different predicates may separate faces of one id; the mesh will tell.
-      return a.body == b.body && a.where == b.where && std::any_of(a.boundary_ids.begin(), a.boundary_ids.end(), in_b);
-    }
-
-    void check_friction(const Section &section, const ContactPairParameters &pair)
-    {
-      const bool tied    = pair.contact_law == ContactPairParameters::ContactLaw::tied,
-                 coulomb = pair.friction_coefficient > 0.;
-      for (const auto &[key, given] :
-           {std::make_pair("Friction coefficient", coulomb),
-            std::make_pair("Shear limit", pair.shear_limit > 0.),
-            std::make_pair("Initial overclosure",
-                           pair.initial_overclosure != ContactPairParameters::InitialOverclosure::resolve)})
-        section.require(!tied || !given, key, "has no effect on a tied pair; remove it");
-      section.require(pair.contact_law == ContactPairParameters::ContactLaw::unilateral ||
-                          pair.initial_overclosure == ContactPairParameters::InitialOverclosure::resolve,
-                      "Initial overclosure",
-                      "has no effect on a bilateral pair, which is always adjusted; remove it");
-      section.require(!tied || pair.initial_status != ContactPairParameters::InitialStatus::open,
-                      "Initial status",
-                      "is open, but a tied pair never closes later; remove it");
-      if (pair.friction_law == ContactPairParameters::FrictionLaw::tresca)
-      {
-        section.require(!tied, "Friction law", "has no effect on a tied pair; remove it");
-        section.require(pair.shear_limit > 0., "Shear limit", "must be given and > 0: it is the friction of Tresca");
-        section.require(!coulomb, "Friction coefficient", "has no effect on 'Friction law = Tresca'; remove it");
-      }
-      else
-        section.require(coulomb || pair.shear_limit == 0.,
-                        "Shear limit",
-                        "limits a friction that is 0; give a Friction coefficient, or set 'Friction law = Tresca'");
-      const bool second = pair.second_friction_coefficient > 0., direction = pair.friction_direction != Vector3();
-      section.require(!second || coulomb, "Second friction coefficient", "needs a Friction coefficient > 0");
-      section.require(!second || direction, "Friction direction", "is missing; give that of the first coefficient");
-      section.require(second || !direction,
-                      "Friction direction",
-                      "has no effect without a Second friction coefficient; remove it or give that");
-      const bool factor = pair.friction_factor != "1";
-      section.require(!factor || coulomb || pair.friction_law == ContactPairParameters::FrictionLaw::tresca,
-                      "Friction factor",
-                      "has no effect without friction; give a Friction coefficient");
-      if (factor)
-        check_expression(section, "Friction factor", pair.friction_factor, "x,y,z,v");
-    }
-
-    void check(const Section &section, const ContactPairParameters &pair, const unsigned int n_bodies)
-    {
-      check_friction(section, pair);
-      const bool adjusts = pair.contact_law != ContactPairParameters::ContactLaw::unilateral ||
-                           pair.initial_overclosure == ContactPairParameters::InitialOverclosure::adjust;
-      section.require(adjusts || pair.adjustment_distance == 0.,
-                      "Adjustment distance",
-                      "has no effect; set 'Initial overclosure = strain-free adjust', or remove it");
-      const std::string missing = "is missing; give the boundary ids of the faces in contact";
-      check(section, pair.slave, "Slave ", n_bodies, 1);
-      section.require(!pair.slave.boundary_ids.empty(), "Slave boundary ids", missing);
-      check(section, pair.master, "Master ", n_bodies, 1);
-      section.require(!pair.master.boundary_ids.empty(), "Master boundary ids", missing);
-      section.require(!share_faces(pair.slave, pair.master),
-                      "Master boundary ids",
-                      "names faces that are slaves of the same pair; give the two sides different bodies or ids");
-
-      using Scheme = ContactPairParameters::Scheme;
-      using Rule   = ContactPairParameters::QuadratureRule;
-      section.require(
-          pair.scheme == Scheme::nodal || pair.weights != ContactPairParameters::Weights::consistent,
-          "Weights",
-          "is consistent, which needs 'Scheme = nodal'; the other schemes bring their own weights: remove the key");
-      const unsigned int n = pair.quadrature_points;
-      section.require(n == 0 || pair.quadrature_rule != Rule::simpson || (n >= 3 && n % 2 == 1),
-                      "Quadrature points",
-                      "is " + std::to_string(n) + "; Simpson's rule takes an odd number from 3");
-      section.require(n == 0 || pair.quadrature_rule != Rule::newton_cotes || (n >= 2 && n <= 5) || n == 7,
-                      "Quadrature points",
-                      "is " + std::to_string(n) + "; Newton-Cotes rules with positive weights have 2, 3, 4, 5 or 7");
     }
 
     void check(const Section &section, const LinearSolverParameters &solver)
@@ -357,6 +255,10 @@ namespace Nodus
 
     for (unsigned int i = 0; i < n_bodies; ++i)
       Nodus::check({file, "Body " + std::to_string(i + 1)}, bodies[i]);
+    Section{file, "Body 1"}.require(
+        std::any_of(bodies.begin(), bodies.end(), [](const BodyParameters &body) { return !body.rigid; }),
+        "Rigid",
+        "is true for all bodies; there is nothing to solve, leave one deformable");
     for (unsigned int i = 0; i < boundary_conditions.size(); ++i)
       Nodus::check({file, "Boundary condition " + std::to_string(i + 1)},
                    boundary_conditions[i],
@@ -366,6 +268,10 @@ namespace Nodus
     {
       const Section section{file, "Contact pair " + std::to_string(i + 1)};
       Nodus::check(section, contact_pairs[i], n_bodies);
+      section.require(!bodies[contact_pairs[i].slave.body - 1].rigid ||
+                          (!contact_pairs[i].has_rigid_master() && !bodies[contact_pairs[i].master.body - 1].rigid),
+                      "Slave body",
+                      "is rigid, as is the master: neither can give way; remove the pair");
       for (unsigned int j = 0; j < i; ++j)
         section.require(!share_faces(contact_pairs[i].slave, contact_pairs[j].slave),
                         "Slave boundary ids",

@@ -7,6 +7,13 @@ namespace Nodus
   {
     using namespace ParameterKeys;
 
+    const Names<MasterSurfaceParameters::Shape> shape_names = {
+        {MasterSurfaceParameters::Shape::mesh, "mesh"},
+        {MasterSurfaceParameters::Shape::plane, "plane"},
+        {MasterSurfaceParameters::Shape::sphere, "sphere"},
+        {MasterSurfaceParameters::Shape::cylinder, "cylinder"},
+        {MasterSurfaceParameters::Shape::paraboloid, "paraboloid"}};
+
     const Names<ContactPairParameters::Scheme> scheme_names = {
         {ContactPairParameters::Scheme::nodal, "nodal"},
         {ContactPairParameters::Scheme::integration_point, "integration point"},
@@ -61,6 +68,11 @@ namespace Nodus
 
   } // namespace
 
+  std::string text_of(const MasterSurfaceParameters::Shape shape)
+  {
+    return text_of(shape, shape_names);
+  }
+
   std::string text_of(const ContactPairParameters::Scheme scheme)
   {
     return text_of(scheme, scheme_names);
@@ -99,12 +111,84 @@ namespace Nodus
                       Patterns::Anything());
   }
 
+  void ParameterKeys::add_expressions(ParameterHandler         &prm,
+                                      const std::string        &key,
+                                      std::vector<std::string> &expressions,
+                                      const std::string        &documentation)
+  {
+    std::string default_text;
+    for (const std::string &expression : expressions)
+      default_text += (default_text.empty() ? "" : "; ") + expression;
+    prm.declare_entry(key, default_text, anything_separated_by(";"), documentation);
+    prm.add_action(key,
+                   [&expressions](const std::string &text)
+                   { expressions = dealii::Utilities::split_string_list(text, ';'); });
+  }
+
+  void ParameterKeys::add_motion(ParameterHandler           &prm,
+                                 const std::string          &prefix,
+                                 PrescribedMotionParameters &motion,
+                                 const std::string          &axis,
+                                 const std::string          &centre)
+  {
+    add_expressions(prm,
+                    prefixed(prefix, "Translation"),
+                    motion.translation,
+                    "Shift of the rigid body at time t [length]: three expressions of t, separated by ';'.");
+    prm.add_parameter(
+        prefixed(prefix, "Rotation"),
+        motion.rotation,
+        "Angle by which the rigid body has turned at time t, before the translation [degrees]: expression "
+        "of t, e.g. 90*t.",
+        Patterns::Anything());
+    prm.add_parameter(prefixed(prefix, "Rotation axis"),
+                      motion.rotation_axis,
+                      "Axis about which the rigid body turns, right-handed [-]; three numbers" + axis + ".");
+    prm.add_parameter(
+        prefixed(prefix, "Rotation centre"),
+        motion.rotation_centre,
+        "Point that the rotation of the rigid body leaves where it is [length]; three numbers, empty: " + centre + ".",
+        numbers);
+  }
+
+  /// A rigid surface instead of a meshed master.
+  static void add_master_surface(ParameterKeys::ParameterHandler &prm, MasterSurfaceParameters &surface)
+  {
+    using namespace ParameterKeys;
+    add_choice(
+        prm,
+        "Master surface",
+        surface.shape,
+        shape_names,
+        "What the slave touches [-]: faces of a mesh, or a rigid surface in closed form, without Master body and "
+        "boundary ids. A paraboloid is one of revolution.");
+    prm.add_parameter("Master point",
+                      surface.point,
+                      "Rigid surface: a point of the plane, the centre of the sphere, a point on the axis of the "
+                      "cylinder, the apex of the paraboloid, at t = 0 [length]; three numbers.");
+    prm.add_parameter("Master axis",
+                      surface.axis,
+                      "Rigid surface: axis of the cylinder; normal of the plane, or of the paraboloid at its apex, out "
+                      "of the rigid body, at t = 0 [-]; three numbers.");
+    prm.add_parameter("Master radius",
+                      surface.radius,
+                      "Rigid surface: radius of sphere or cylinder, radius of curvature of the paraboloid at its apex "
+                      "[length], > 0.",
+                      not_negative);
+    prm.add_parameter("Master cavity",
+                      surface.cavity,
+                      "Rigid surface: whether the slave is inside of the sphere, cylinder or paraboloid, and the rigid "
+                      "body around it [-].");
+    add_motion(prm, "Master ", surface.motion, "; zero: Master axis", "Master point");
+  }
+
   void ParameterKeys::add_contact_pair(ParameterHandler &prm, ContactPairParameters &pair)
   {
     const std::string where = "It is asked at the centres of the faces.";
     prm.add_parameter("Name", pair.name, "Name in tables and messages [-]; empty: pair <n>.", Patterns::Anything());
     add_region(prm, "Slave ", pair.slave, " that carries the contact pressures, better the softer or finer one", where);
     add_region(prm, "Master ", pair.master, " that the slave nodes are projected onto", where);
+    add_master_surface(prm, pair.master_surface);
     add_choice(prm,
                "Scheme",
                pair.scheme,

@@ -132,7 +132,7 @@ namespace Nodus
       using Scheme = ContactPairParameters::Scheme;
       std::ostringstream text;
       text << text_of(pair.scheme) << " scheme"
-           << (pair.scheme == Scheme::averaged ? ", by " + text_of(pair.integration) : "") << ", "
+           << (pair.scheme == Scheme::averaged ? ", by " + text_of(pair.applied_integration()) : "") << ", "
            << text_of(pair.surface) << " surface, ";
       using Pair = ContactPairParameters;
       if (pair.contact_law != Pair::ContactLaw::unilateral)
@@ -194,8 +194,11 @@ namespace Nodus
       std::ostringstream text;
       text << "  body " << b + 1 << " (" << p.bodies.name(b) << "): " << counted(cells[b], "cell") << ", " << size[0]
            << " x " << size[1] << " x " << size[2] << " from " << coordinates(ends.first) << " to "
-           << coordinates(ends.second) << ", boundary ids " << joined(p.bodies.boundary_ids(b), ", ") << "; "
-           << text_of(material.law) << ", E = " << material.youngs_modulus << ", nu = " << material.poissons_ratio;
+           << coordinates(ends.second) << ", boundary ids " << joined(p.bodies.boundary_ids(b), ", ") << "; ";
+      if (parameters.bodies[b].rigid)
+        text << "rigid";
+      else
+        text << text_of(material.law) << ", E = " << material.youngs_modulus << ", nu = " << material.poissons_ratio;
       p.console.line(text.str());
     }
 

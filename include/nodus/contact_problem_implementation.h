@@ -58,6 +58,7 @@ namespace Nodus
     void           solve_increment();
     void           solve_loops();
     void           pair_surfaces();
+    void           freeze_geometry();
     void           note_pass(const FixedPointLoop &loop, double value, const std::string &worst);
     bool           geometry_converged(FixedPointLoop &loop);
     bool           threshold_converged(FixedPointLoop &loop, SecantAcceleration &secant);

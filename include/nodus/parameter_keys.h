@@ -61,6 +61,7 @@ namespace Nodus
 
     inline const Patterns::Double  any_number, not_negative(0.), positive(std::numeric_limits<double>::min());
     inline const Patterns::Integer count(0), at_least_one(1);
+    inline const Patterns::List    numbers(Patterns::Double(), 0, std::numeric_limits<unsigned int>::max(), ",");
     inline const Patterns::List    ids(Patterns::Integer(0), 0, std::numeric_limits<unsigned int>::max(), ",");
 
     /// Keys "Body", "Boundary ids", "Where" behind @p prefix, which is "Slave ", "Master " or empty.
@@ -69,6 +70,25 @@ namespace Nodus
                     RegionParameters  &region,
                     const std::string &every_body,
                     const std::string &where);
+
+    inline Patterns::List anything_separated_by(const std::string &separator)
+    {
+      return Patterns::List(Patterns::Anything(), 0, std::numeric_limits<unsigned int>::max(), separator);
+    }
+
+    /// Expressions separated by ';' because commas belong to the expressions: if(t<1, t, 1).
+    void add_expressions(ParameterHandler         &prm,
+                         const std::string        &key,
+                         std::vector<std::string> &expressions,
+                         const std::string        &documentation);
+
+    /// Keys "Translation", "Rotation", "Rotation axis", "Rotation centre" behind @p prefix. @p axis, @p centre: what
+    /// counts where none are given.
+    void add_motion(ParameterHandler           &prm,
+                    const std::string          &prefix,
+                    PrescribedMotionParameters &motion,
+                    const std::string          &axis,
+                    const std::string          &centre);
 
     void add_contact_pair(ParameterHandler &prm, ContactPairParameters &pair);
   } // namespace ParameterKeys

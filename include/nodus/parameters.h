@@ -30,6 +30,34 @@ namespace Nodus
     std::string                             where; ///< muParser predicate of x, y, z; empty = everywhere
   };
 
+  /// A rigid body in time: x = c + R(t) (X - c) + T(t).
+  struct PrescribedMotionParameters
+  {
+    std::vector<std::string> translation = {"0", "0", "0"}; ///< T, muParser expressions of t [length]
+    std::string              rotation    = "0";             ///< angle about the axis, expression of t [degrees]
+    Vector3                  rotation_axis;                 ///< zero: what the owner says
+    std::vector<double>      rotation_centre;               ///< c, reference position; empty: what the owner says
+  };
+
+  /// A rigid surface in closed form, its body on one side. Convex bodies, or a cavity around the slave.
+  struct MasterSurfaceParameters
+  {
+    enum class Shape
+    {
+      mesh, ///< no such surface: the master is part of a mesh
+      plane,
+      sphere,
+      cylinder,
+      paraboloid ///< of revolution, with the radius of curvature at its apex
+    };
+    Shape                      shape = Shape::mesh;
+    Point                      point;          ///< of the plane, centre, on the axis of the cylinder, apex
+    Vector3                    axis;           ///< of the cylinder; outward normal of plane and apex
+    double                     radius = 0.;    ///< > 0 [length]
+    bool                       cavity = false; ///< the body is outside of sphere, cylinder, paraboloid
+    PrescribedMotionParameters motion;
+  };
+
   struct MaterialParameters
   {
     enum class Law
@@ -78,7 +106,10 @@ namespace Nodus
     unsigned int              local_refinement  = 0; ///< more of it ...
     std::string               refine_where;          ///< ... where this muParser predicate holds at cell centres
     VolumetricTreatment       volumetric_treatment = VolumetricTreatment::standard;
-    MaterialParameters        material;
+    MaterialParameters        material; ///< of a body that is not rigid
+
+    bool                       rigid = false;
+    PrescribedMotionParameters motion; ///< of a rigid body; keys "Rigid translation", ...
   };
 
   struct BoundaryConditionParameters
@@ -202,6 +233,18 @@ namespace Nodus
     double             adjustment_distance            = 0.; ///< gaps up to here are adjusted, too [length]
     double             overclosure_limit              = 0.; ///< [length]; 0 = automatic
     StatusTest         status_test                    = StatusTest::weighted;
+
+    MasterSurfaceParameters master_surface; ///< instead of the master faces; keys "Master surface", ...
+
+    bool has_rigid_master() const
+    {
+      return master_surface.shape != MasterSurfaceParameters::Shape::mesh;
+    }
+    /// Of the averaged scheme: there is nothing that segments could end at on a rigid master.
+    Integration applied_integration() const
+    {
+      return has_rigid_master() ? Integration::face : integration;
+    }
   };
 
   struct LoopParameters
@@ -325,6 +368,7 @@ namespace Nodus
   /// Choices as they are written in the parameter file.
   std::string text_of(MaterialParameters::Law law);
   std::string text_of(BoundaryConditionParameters::Type type);
+  std::string text_of(MasterSurfaceParameters::Shape shape);
   std::string text_of(ContactPairParameters::Scheme scheme);
   std::string text_of(ContactPairParameters::Integration integration);
   std::string text_of(ContactPairParameters::Surface surface);

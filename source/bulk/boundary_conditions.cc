@@ -1,7 +1,9 @@
 #include <nodus/bulk/boundary_conditions.h>
+#include <nodus/bulk/rigid_displacement.h>
 #include <nodus/bulk/throw_everywhere.h>
 #include <nodus/mesh/expression.h>
 
+#include <deal.II/base/function_parser.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe.h>
 #include <deal.II/lac/trilinos_vector.h>
@@ -77,8 +79,8 @@ namespace Nodus
     }
 
     /// Values of one expression at the start, the middle and the end of a part of the load path.
-    std::array<double, 3> history(
-        FunctionParser<dim> &function, const Point &X, const unsigned int entry, const double begin, const double end)
+    std::array<double, 3>
+    history(Function<dim> &function, const Point &X, const unsigned int entry, const double begin, const double end)
     {
       std::array<double, 3> values;
       for (unsigned int s = 0; s < 3; ++s)
@@ -113,15 +115,29 @@ namespace Nodus
                                          const Bodies                                   &bodies,
                                          const DoFHandler<dim>                          &dof_handler,
                                          const Mapping<dim>                             &mapping,
-                                         const std::vector<double>                      &interval_ends)
+                                         const std::vector<double>                      &interval_ends,
+                                         const std::vector<BodyParameters>              &body_parameters)
       : bodies_(bodies)
       , dof_handler_(dof_handler)
       , mapping_(mapping)
+      , n_given_(parameters.size())
       , parameters_(parameters)
       , hanging_(dof_handler)
   {
     for (unsigned int n = 0; n < parameters_.size(); ++n)
       functions_.push_back(parse(parameters_[n], label(n)));
+    for (unsigned int b = 0; b < body_parameters.size(); ++b)
+      if (body_parameters[b].rigid)
+      {
+        BoundaryConditionParameters condition;
+        condition.name        = bodies.name(b);
+        condition.region.body = b + 1;
+        condition.components  = {0, 1, 2};
+        condition.value.assign(dim, "rigid motion");
+        parameters_.push_back(condition);
+        functions_.push_back(
+            std::make_unique<RigidDisplacement>(body_parameters[b].motion, label(parameters_.size() - 1)));
+      }
     add_loads();
     find_stages(interval_ends);
     for (unsigned int stage = stages_.size(); stage-- > 0;) // all are checked, the first one stays
@@ -157,6 +173,8 @@ namespace Nodus
   std::string BoundaryConditions::label(const unsigned int condition) const
   {
     const std::string &name = parameters_[condition].name;
+    if (condition >= n_given_)
+      return "Rigid body " + std::to_string(parameters_[condition].region.body) + " ('" + name + "')";
     return "Boundary condition " + std::to_string(condition + 1) + (name.empty() ? "" : " ('" + name + "')");
   }
 
@@ -226,28 +244,34 @@ namespace Nodus
         if (!stage.acts[n])
           continue;
         const Region region(parameters_[n].region, bodies_, label(n));
+        const auto   take = [&](const CellIterator &cell, const unsigned int a)
+        {
+          const Point X = mapping_.transform_unit_to_real_cell(cell, scalar_fe.unit_support_point(a));
+          if (!region.contains_point(X))
+            return;
+          ++found[n];
+          for (unsigned int e = 0; e < parameters_[n].components.size(); ++e)
+          {
+            const auto component = parameters_[n].components[e];
+            const auto dof       = dofs[fe.component_to_system_index(component, a)];
+            if (owned.is_element(dof))
+              hold(dof, X, n, e);
+          }
+        };
+        const bool whole_body = n >= n_given_;
         for (const auto &cell : dof_handler_.active_cell_iterators())
           if (!cell->is_artificial())
+          {
+            cell->get_dof_indices(dofs);
+            for (unsigned int a = 0; a < scalar_fe.n_dofs_per_cell(); ++a)
+              if (whole_body && cell->material_id() + 1 == parameters_[n].region.body)
+                take(cell, a);
             for (const auto face : cell->face_indices())
-              if (region.contains_face(cell, face))
-              {
-                cell->get_dof_indices(dofs);
+              if (!whole_body && region.contains_face(cell, face))
                 for (unsigned int a = 0; a < scalar_fe.n_dofs_per_cell(); ++a)
                   if (scalar_fe.has_support_on_face(a, face))
-                  {
-                    const Point X = mapping_.transform_unit_to_real_cell(cell, scalar_fe.unit_support_point(a));
-                    if (!region.contains_point(X))
-                      continue;
-                    ++found[n];
-                    for (unsigned int e = 0; e < parameters_[n].components.size(); ++e)
-                    {
-                      const auto component = parameters_[n].components[e];
-                      const auto dof       = dofs[fe.component_to_system_index(component, a)];
-                      if (owned.is_element(dof))
-                        hold(dof, X, n, e);
-                    }
-                  }
-              }
+                    take(cell, a);
+          }
         for (const auto &[dof, where] : held)
           if (where.condition == n)
             reaction_regions_.back().dofs[parameters_[n].components[where.entry]].push_back(dof);

@@ -6,6 +6,7 @@
 #include <deal.II/lac/trilinos_vector.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <sstream>
@@ -273,6 +274,24 @@ namespace Nodus
     }
   }
 
+  /// No force; on the rows of the nodes, which are prescribed, a diagonal of the size of the others.
+  void SolidAssembler::Scratch::integrate_rigid(const unsigned int n, Lanes &det_F)
+  {
+    det_F = Lanes{} + 1.;
+    std::fill(batch_force.begin(), batch_force.end(), Lanes{});
+    std::fill(batch_stiffness.begin(), batch_stiffness.end(), Lanes{});
+    for (unsigned int v = 0; v < batches[n].size; ++v)
+    {
+      double volume = 0.;
+      for (unsigned int q = 0; q < n_q; ++q)
+        volume += geometry[n * n_q + q].JxW[v];
+      const double diagonal = material(batches[n]).youngs_modulus() * std::cbrt(volume) / n_nodes;
+      for (unsigned int a = 0; a < n_nodes; ++a)
+        for (unsigned int i = 0; i < dim; ++i)
+          entry(a, i, a, i, v) = diagonal;
+    }
+  }
+
   /// Contact loops come back with other statuses and the same displacement: then everything is there already. Otherwise
   /// takes note of the values for the next call.
   bool SolidAssembler::Scratch::is_last(const Vector                    &u,
@@ -337,14 +356,17 @@ namespace Nodus
       if (tangent)
         prefetch(batch, *tangent);
       Lanes det_F;
-      kernel(batch).integrate(&geometry[n * n_q],
-                              material(batch),
-                              batch_u.data(),
-                              goes_on ? batch_u_before.data() : nullptr,
-                              {committed.data() + batch.state, current.data() + batch.state},
-                              batch_force.data(),
-                              tangent ? batch_stiffness.data() : nullptr,
-                              det_F);
+      if (material(batch).is_rigid())
+        integrate_rigid(n, det_F);
+      else
+        kernel(batch).integrate(&geometry[n * n_q],
+                                material(batch),
+                                batch_u.data(),
+                                goes_on ? batch_u_before.data() : nullptr,
+                                {committed.data() + batch.state, current.data() + batch.state},
+                                batch_force.data(),
+                                tangent ? batch_stiffness.data() : nullptr,
+                                det_F);
       for (unsigned int v = 0; v < batch.size && failure.empty(); ++v)
         if (!(det_F[v] > 0.))
         {

@@ -33,7 +33,7 @@ namespace Nodus
       std::vector<DoFIndex> slaves;       ///< first degrees of freedom
       std::vector<DoFIndex> nodes;        ///< likewise: nodes of the face, then master nodes
       std::vector<double>   weights;      ///< per slave node: weight of each node, area, full area
-      std::vector<double>   vectors;      ///< per slave node: offset, normal
+      std::vector<double>   vectors;      ///< per slave node: offset, normal, rigid part
 
       template <typename Archive>
       void serialize(Archive &archive, const unsigned int)
@@ -41,6 +41,9 @@ namespace Nodus
         archive &pair &number &slaves &nodes &weights &vectors;
       }
     };
+
+    /// Vectors of each node in FaceRows.
+    constexpr unsigned int n_vectors = 4 * dim;
 
     /// Bilinear hats of the nodes: on the face, or on the quarters of one of degree 2.
     Column hats(const unsigned int degree, const double xi, const double eta)
@@ -87,12 +90,68 @@ namespace Nodus
       return inside ? covered / area : 0.;
     }
 
+    /// The same where the master is rigid: its points are found again from those of the slave.
+    double face_points(const ContactGeometry       &geometry,
+                       const unsigned int           pair,
+                       const unsigned int           f,
+                       const dealii::Quadrature<2> &rule,
+                       std::vector<MortarPoint>    &points)
+    {
+      const SurfaceGeometry &slave = geometry.slave[pair];
+      double                 area = 0., covered = 0.;
+      for (unsigned int q = 0; q < rule.size(); ++q)
+      {
+        const double       xi = rule.point(q)[0], eta = rule.point(q)[1];
+        const FaceGeometry point = slave.at(f, xi, eta);
+        const double       part  = rule.weight(q) * point.area_vector().norm();
+        area += part;
+        if (!geometry.closest_on_rigid(pair, point.x, slave.normal(f, xi, eta)).found)
+          continue;
+        covered += part;
+        points.push_back({xi, eta, rule.weight(q), Projection()});
+      }
+      return covered / area;
+    }
+
+    /// The master at a point of a slave face.
+    struct Partner
+    {
+      unsigned int          n     = 0;       ///< nodes
+      const unsigned int   *nodes = nullptr; ///< of the master face, none of a rigid one
+      std::array<double, 9> weights;
+      Vector3               normal; ///< unit, from slave to master
+      Vector3               offset; ///< of a smoothed surface
+      RigidPart             rigid;
+    };
+
+    Partner meshed_partner(const ContactPairParameters &pair, const SurfaceGeometry &master, const Projection &point)
+    {
+      const auto     &nodes = master.face(point.face).nodes;
+      const FaceShape shape(master.degree(), point.xi, point.eta);
+      const Vector3   normal = pair.normal == ContactPairParameters::Normal::averaged
+                                   ? master.averaged_normal(point.face, point.xi, point.eta)
+                                   : master.normal(point.face, point.xi, point.eta);
+      return {static_cast<unsigned int>(nodes.size()),
+              nodes.data(),
+              shape.value,
+              -normal,
+              master.offset(point.face, point.xi, point.eta),
+              {}};
+    }
+
+    Partner rigid_partner(const RigidSurface &master, const Point &p)
+    {
+      const RigidPoint point = master.closest(p);
+      return {0, nullptr, {}, -point.normal, Vector3(), {point.x, master.moved(point.x)}};
+    }
+
     /// Integrates one face; @p all_psi is overwritten.
     FaceRows integrate(const ContactPairParameters    &pair,
                        const ContactSurfaces          &surfaces,
                        const SurfaceGeometry          &slave,
                        const unsigned int              f,
                        const SurfaceGeometry          &master,
+                       const RigidSurface *const       rigid,
                        const std::vector<MortarPoint> &points,
                        const double                    coverage,
                        const std::vector<Point>       &measure,
@@ -104,9 +163,10 @@ namespace Nodus
       FaceRows                  result{0, face.number, {}, {}, {}, {}};
       std::vector<unsigned int> nodes(face.nodes);
       for (const MortarPoint &point : points)
-        for (const unsigned int node : master.face(point.master.face).nodes)
-          if (std::find(nodes.begin() + n, nodes.end(), node) == nodes.end())
-            nodes.push_back(node);
+        if (rigid == nullptr)
+          for (const unsigned int node : master.face(point.master.face).nodes)
+            if (std::find(nodes.begin() + n, nodes.end(), node) == nodes.end())
+              nodes.push_back(node);
       for (const unsigned int node : nodes)
         result.nodes.push_back(surfaces.nodes()[node].dofs[0]);
       for (const unsigned int k : face.slaves)
@@ -137,41 +197,40 @@ namespace Nodus
 
       const unsigned int n_columns = result.nodes.size() + 2;
       result.weights.assign(m * n_columns, 0.);
-      result.vectors.assign(6 * m, 0.);
+      result.vectors.assign(n_vectors * m, 0.);
       all_psi.resize(m * points.size());
       for (unsigned int q = 0; q < points.size(); ++q)
       {
-        const MortarPoint &point = points[q];
-        const FaceShape    shape(degree, point.xi, point.eta);
-        const FaceShape    master_shape(degree, point.master.xi, point.master.eta);
-        const SurfaceFace &master_face = master.face(point.master.face);
-        const Column       phi         = of_slaves(shape.value);
-        const Column       hat         = of_slaves(hats(degree, point.xi, point.eta));
-        const Column       psi         = weight[q] * (dual * phi + (1. - part) * hat);
-        const Vector3      offset =
-            slave.offset(f, point.xi, point.eta) - master.offset(point.master.face, point.master.xi, point.master.eta);
-        const Vector3 normal = pair.normal == ContactPairParameters::Normal::slave
-                                   ? slave.averaged_normal(f, point.xi, point.eta)
-                               : pair.normal == ContactPairParameters::Normal::averaged
-                                   ? -master.averaged_normal(point.master.face, point.master.xi, point.master.eta)
-                                   : -master.normal(point.master.face, point.master.xi, point.master.eta);
-        unsigned int  column[9];
-        for (unsigned int b = 0; b < n; ++b)
-          column[b] = std::find(nodes.begin() + n, nodes.end(), master_face.nodes[b]) - nodes.begin();
+        const MortarPoint             &point = points[q];
+        const FaceShape                shape(degree, point.xi, point.eta);
+        const Column                   phi     = of_slaves(shape.value);
+        const Column                   hat     = of_slaves(hats(degree, point.xi, point.eta));
+        const Column                   psi     = weight[q] * (dual * phi + (1. - part) * hat);
+        const Partner                  partner = rigid == nullptr ? meshed_partner(pair, master, point.master)
+                                                                  : rigid_partner(*rigid, slave.at(f, point.xi, point.eta).x);
+        const Vector3                  offset  = slave.offset(f, point.xi, point.eta) - partner.offset;
+        const Vector3                  normal  = pair.normal == ContactPairParameters::Normal::slave
+                                                     ? slave.averaged_normal(f, point.xi, point.eta)
+                                                     : partner.normal;
+        unsigned int                   column[9];
+        for (unsigned int b = 0; b < partner.n; ++b)
+          column[b] = std::find(nodes.begin() + n, nodes.end(), partner.nodes[b]) - nodes.begin();
         for (unsigned int a = 0; a < m; ++a)
         {
           double *const row  = result.weights.data() + a * n_columns;
           all_psi[m * q + a] = psi[a];
           for (unsigned int b = 0; b < n; ++b)
-          {
             row[b] += psi[a] * shape.value[b];
-            row[column[b]] -= psi[a] * master_shape.value[b];
-          }
+          for (unsigned int b = 0; b < partner.n; ++b)
+            row[column[b]] -= psi[a] * partner.weights[b];
           row[n_columns - 2] += psi[a];
           for (unsigned int c = 0; c < dim; ++c)
           {
-            result.vectors[6 * a + c] += psi[a] * offset[c];
-            result.vectors[6 * a + 3 + c] += weight[q] * hat[a] * normal[c];
+            double *const v = result.vectors.data() + n_vectors * a + c;
+            v[0] += psi[a] * offset[c];
+            v[dim] += weight[q] * hat[a] * normal[c];
+            v[2 * dim] += psi[a] * partner.rigid.x[c];
+            v[3 * dim] += psi[a] * partner.rigid.moved[c];
           }
         }
       }
@@ -194,8 +253,8 @@ namespace Nodus
           const double scale = 1. + part * (exact[a] / row[n_columns - 2] - 1.);
           for (unsigned int b = 0; b < n_columns; ++b)
             row[b] *= scale;
-          for (unsigned int c = 0; c < dim; ++c)
-            result.vectors[6 * a + c] *= scale;
+          for (unsigned int c = 0; c < n_vectors; ++c)
+            result.vectors[n_vectors * a + c] *= c / dim == 1 ? 1. : scale; // normals become unit ones
           for (unsigned int q = 0; q < points.size(); ++q)
             all_psi[m * q + a] *= scale;
         }
@@ -245,6 +304,7 @@ namespace Nodus
       if (pairs[p].scheme != ContactPairParameters::Scheme::averaged)
         continue;
       any                  = true;
+      const bool  rigid    = geometry.rigid[p] != nullptr;
       const bool  segments = pairs[p].integration == ContactPairParameters::Integration::segment;
       const auto  rule     = face_rule(pairs[p], surfaces.degree());
       const auto &measure  = pairs[p].surface_measure == ContactPairParameters::SurfaceMeasure::current ? x : X;
@@ -255,20 +315,22 @@ namespace Nodus
         faces_.push_back({p, f, {}, {}});
         std::vector<MortarPoint> &points = faces_.back().points;
         const double              coverage =
-            segments ? segment_points(
-                           geometry.slave[p], f, geometry.master[p], geometry.search[p], geometry.reach[p], points)
-                                  : face_points(geometry.slave[p],
-                                   f,
-                                   rule,
-                                   geometry.search[p],
-                                   geometry.reach[p],
-                                   pairs[p].projection_tolerance,
-                                   points);
+            rigid      ? face_points(geometry, p, f, rule, points)
+                         : segments ? segment_points(
+                             geometry.slave[p], f, geometry.master[p], geometry.search[p], geometry.reach[p], points)
+                                    : face_points(geometry.slave[p],
+                                     f,
+                                     rule,
+                                     geometry.search[p],
+                                     geometry.reach[p],
+                                     pairs[p].projection_tolerance,
+                                     points);
         mine.push_back(integrate(pairs[p],
                                  surfaces,
                                  geometry.slave[p],
                                  f,
                                  geometry.master[p],
+                                 geometry.rigid[p],
                                  points,
                                  coverage,
                                  measure,
@@ -316,8 +378,11 @@ namespace Nodus
         full[k] += w[n_columns - 1];
         for (unsigned int c = 0; c < dim; ++c)
         {
-          row.offset[c] += face.vectors[6 * a + c];
-          row.normal[c] += face.vectors[6 * a + 3 + c];
+          const double *const v = face.vectors.data() + n_vectors * a + c;
+          row.offset[c] += v[0];
+          row.normal[c] += v[dim];
+          row.rigid.x[c] += v[2 * dim];
+          row.rigid.moved[c] += v[3 * dim];
         }
       }
     }
@@ -340,7 +405,8 @@ namespace Nodus
                        entries->end());
         std::sort(entries->begin(), entries->end(), [](const Entry &a, const Entry &b) { return a.node < b.node; });
       }
-      row.offset /= row.area;
+      for (Vector3 *const v : {&row.offset, &row.rigid.x, &row.rigid.moved})
+        *v /= row.area;
       row.normal /= row.normal.norm();
     }
 

@@ -83,7 +83,7 @@ namespace Nodus
   std::array<double, 2> ContactAssembler::slip(const ContactState &state, const unsigned int site) const
   {
     std::array<double, 2> result{{0., 0.}};
-    const Vector3         jump = jump_.jump(site, state.increment);
+    const Vector3         jump = jump_.jump_of_increment(site, state.increment);
     for (unsigned int i = 0; i < 2; ++i)
       if (pairing_[site].tangent_free[i])
         result[i] = pairing_[site].tangent[i] * jump;
@@ -204,7 +204,7 @@ namespace Nodus
             const Column3 t = eigen(pairing_[s].tangent[i]);
             jump.projector += pairing_[s].friction_scale[i] * t * t.transpose();
           }
-        const Column3 slip = jump.projector * eigen(jump_.jump(s, state.increment));
+        const Column3 slip = jump.projector * eigen(jump_.jump_of_increment(s, state.increment));
         distance += jump.contact * this->distance(state, s);
         threshold += phi * (friction ? status_.threshold(s) : 0.);
         slip_stick += jump.stick * slip;

@@ -146,8 +146,27 @@ namespace Nodus
       slave.emplace_back(surfaces.slave_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
       master.emplace_back(surfaces.master_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
       search.emplace_back(master[p]);
+      rigid.push_back(surfaces.rigid_master(p));
     }
     reach = search_reach(pairs, surfaces, positions);
+  }
+
+  RigidPoint
+  ContactGeometry::closest_on_rigid(const unsigned int pair, const Point &p, const Vector3 &slave_normal) const
+  {
+    RigidPoint point = rigid[pair]->closest(p);
+    point.found =
+        point.found && std::abs(point.height) <= reach[pair] && point.normal * slave_normal <= far_side_cosine;
+    return point;
+  }
+
+  Point ContactGeometry::position(const ContactSurfaces &surfaces, const unsigned int site) const
+  {
+    const unsigned int p = surfaces.pair(site);
+    if (!surfaces.is_point(site))
+      return slave[p].positions()[surfaces.slave_nodes()[site].node];
+    const SlavePoint &point = surfaces.point(site);
+    return slave[p].at(point.face, point.xi, point.eta).x;
   }
 
   double closest_point(const SurfaceGeometry &surface, const unsigned int f, const Point &p, double &xi, double &eta)

@@ -84,13 +84,32 @@ namespace Nodus
       point.dual[1] = held[0] ? x.d_eta / c : (a * x.d_eta - b * x.d_xi) / det;
   }
 
+  /// The point moves on the surface along the principal directions.
+  void GeometryTangent::project_on_rigid(const RigidPoint &master, ProjectedPoint &point) const
+  {
+    for (unsigned int alpha = 0; alpha < 2; ++alpha)
+    {
+      point.tangent[alpha] = master.direction[alpha];
+      point.dual[alpha]    = master.slide() * master.direction[alpha];
+    }
+  }
+
   std::vector<NodeDerivative> GeometryTangent::normal_derivative(const unsigned int site) const
   {
     using Normal = ContactPairParameters::Normal;
     std::vector<NodeDerivative> derivative;
     const unsigned int          p      = surfaces_.pair(site);
     const Projection           &master = pairing_[site].master;
-    if (!master.found() || pairs_[p].normal == Normal::slave)
+    if (pairs_[p].normal == Normal::slave)
+      return derivative;
+    if (geometry_.rigid[p] != nullptr)
+    {
+      const RigidPoint point = geometry_.rigid[p]->closest(geometry_.position(surfaces_, site));
+      for (const Entry &e : slave_point(site).motion)
+        Nodus::add(derivative, e.node, -e.weight * point.normal_derivative());
+      return derivative;
+    }
+    if (!master.found())
       return derivative;
 
     const SurfaceGeometry &surface   = geometry_.master[p];
@@ -270,10 +289,15 @@ namespace Nodus
                   FaceShape(surfaces_.degree(), p.xi, p.eta).value,
                   1.,
                   point.motion);
-        project(face.pair, p.master, point);
+        const RigidSurface *const rigid = geometry_.rigid[face.pair];
+        if (rigid != nullptr)
+          project_on_rigid(rigid->closest(geometry_.slave[face.pair].at(face.face, p.xi, p.eta).x), point);
+        else
+          project(face.pair, p.master, point);
         add_point(point, residual, blocks);
         add_offset(0, face.face, p.xi, p.eta, point, blocks);
-        add_offset(1, p.master.face, p.master.xi, p.master.eta, point, blocks);
+        if (rigid == nullptr)
+          add_offset(1, p.master.face, p.master.xi, p.master.eta, point, blocks);
       }
       finish_offsets(face.pair, blocks);
       add_to(sum, blocks);
@@ -281,20 +305,25 @@ namespace Nodus
 
     for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
     {
-      if (!surfaces_.is_owned(s) || !active(s) || !pairing_[s].master.found())
+      const unsigned int        p     = surfaces_.pair(s);
+      const RigidSurface *const rigid = geometry_.rigid[p];
+      if (!surfaces_.is_owned(s) || !active(s) || !(rigid != nullptr || pairing_[s].master.found()))
         continue;
       blocks.clear();
-      const unsigned int p = surfaces_.pair(s);
       if (pairs_[p].scheme != ContactPairParameters::Scheme::averaged)
       {
         ProjectedPoint point = slave_point(s);
-        project(p, pairing_[s].master, point);
+        if (rigid != nullptr)
+          project_on_rigid(rigid->closest(geometry_.position(surfaces_, s)), point);
+        else
+          project(p, pairing_[s].master, point);
         point.sites.emplace_back(s, 1.);
         add_point(point, residual, blocks);
         const Projection &master = pairing_[s].master;
         if (surfaces_.is_point(s))
           add_offset(0, surfaces_.point(s).face, surfaces_.point(s).xi, surfaces_.point(s).eta, point, blocks);
-        add_offset(1, master.face, master.xi, master.eta, point, blocks);
+        if (rigid == nullptr)
+          add_offset(1, master.face, master.xi, master.eta, point, blocks);
         finish_offsets(p, blocks);
       }
       // r turns with the normal: delta r = (r.n) delta n - n (r_tau . delta n)

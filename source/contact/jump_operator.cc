@@ -33,6 +33,7 @@ namespace Nodus
                       });
       offset_.back() += weight * surfaces.nodes()[node].offset;
     };
+    rigid_.assign(surfaces.n_sites(), RigidPart());
     const auto add_shape = [&](const SurfaceFace &face, const FaceShape &shape, const double sign)
     {
       for (unsigned int n = 0; n < shape.n; ++n)
@@ -53,11 +54,19 @@ namespace Nodus
         entries_.insert(entries_.end(), row.slave.begin(), row.slave.end());
         middle_.back() = entries_.size();
         entries_.insert(entries_.end(), row.master.begin(), row.master.end());
-        offset_.back() = row.offset;
+        rigid_[s]      = row.rigid;
+        offset_.back() = row.offset - row.rigid.x;
       }
-      else if (pairing[s].found && master.found())
+      else if (pairing[s].found && (master.found() || geometry.rigid[p] != nullptr))
       {
-        offset_.back() = -geometry.master[p].offset(master.face, master.xi, master.eta);
+        if (geometry.rigid[p] != nullptr)
+        {
+          const RigidPoint point = geometry.rigid[p]->closest(geometry.position(surfaces, s));
+          rigid_[s]              = {point.x, geometry.rigid[p]->moved(point.x)};
+          offset_.back()         = -rigid_[s].x;
+        }
+        else
+          offset_.back() = -geometry.master[p].offset(master.face, master.xi, master.eta);
         if (surfaces.is_point(s))
         {
           const SlavePoint &point = surfaces.point(s);
@@ -67,7 +76,8 @@ namespace Nodus
         else
           entries_.push_back({surfaces.slave_nodes()[s].node, 1.});
         middle_.back() = first_of_part = entries_.size();
-        add_shape(geometry.master[p].face(master.face), FaceShape(surfaces.degree(), master.xi, master.eta), -1.);
+        if (master.found())
+          add_shape(geometry.master[p].face(master.face), FaceShape(surfaces.degree(), master.xi, master.eta), -1.);
       }
       start_.push_back(entries_.size());
     }

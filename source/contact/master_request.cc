@@ -168,7 +168,9 @@ namespace Nodus
       Vector3 diagonal;
       for (unsigned int c = 0; c < dim; ++c)
         diagonal[c] = -corners[2 * dim * p + dim + c] - corners[2 * dim * p + c];
-      reach.push_back(pairs[p].search_distance > 0. ? pairs[p].search_distance : 0.25 * diagonal.norm());
+      const double automatic =
+          surfaces.rigid_master(p) != nullptr ? std::numeric_limits<double>::max() : 0.25 * diagonal.norm();
+      reach.push_back(pairs[p].search_distance > 0. ? pairs[p].search_distance : automatic);
     }
     return reach;
   }
@@ -208,9 +210,11 @@ namespace Nodus
     std::vector<Question> mine;
     for (unsigned int p = 0; p < pairs.size(); ++p)
       for (const SurfaceFace &face : surfaces.slave_faces(p))
-        if (face.owner == rank || std::any_of(face.slaves.begin(),
-                                              face.slaves.end(),
-                                              [&](const unsigned int k) { return surfaces.is_owned(k); }))
+        if (surfaces.rigid_master(p) != nullptr)
+          break;
+        else if (face.owner == rank || std::any_of(face.slaves.begin(),
+                                                   face.slaves.end(),
+                                                   [&](const unsigned int k) { return surfaces.is_owned(k); }))
         {
           Question question{};
           question.pair = p;

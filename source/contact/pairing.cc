@@ -102,7 +102,7 @@ namespace Nodus
           if (surfaces.is_point(s))
           {
             const SlavePoint &point = surfaces.point(s);
-            x[s]                    = geometry.slave[point.pair].at(point.face, point.xi, point.eta).x;
+            x[s]                    = geometry.position(surfaces, s);
             normal[s]               = geometry.slave[point.pair].averaged_normal(point.face, point.xi, point.eta);
           }
           else
@@ -142,7 +142,7 @@ namespace Nodus
           for (unsigned int n = 0; n < shape.n; ++n)
             add(geometry.master[p].face(pairing.master.face).nodes[n], shape.value[n]);
         }
-        else
+        else if (!surfaces.is_point(site))
           for (const auto &entry : averaged.row(site).master)
             add(entry.node, entry.weight);
         free[c] = weight > free_weight;
@@ -165,10 +165,14 @@ namespace Nodus
         continue;
       SitePairing       &pairing = sites_[s];
       const unsigned int p       = surfaces.pair(s);
-      pairing.master =
-          geometry.search[p].closest(sites.x[s], sites.normal[s], geometry.reach[p], pairs[p].projection_tolerance);
+      RigidPoint         rigid;
+      if (geometry.rigid[p] != nullptr)
+        rigid = geometry.closest_on_rigid(p, sites.x[s], sites.normal[s]);
+      else
+        pairing.master =
+            geometry.search[p].closest(sites.x[s], sites.normal[s], geometry.reach[p], pairs[p].projection_tolerance);
       const bool averages = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
-      const bool paired   = averages ? averaged.covered(s) : pairing.master.found();
+      const bool paired   = averages ? averaged.covered(s) : pairing.master.found() || rigid.found;
       // A node of the integration point scheme needs a frame for its multipliers even where its own projection fails.
       const bool carries_frame = paired || (surfaces.has_points(p) && !surfaces.is_point(s));
       Vector3    normal        = sites.normal[s];
@@ -179,6 +183,11 @@ namespace Nodus
           normal = -geometry.master[p].averaged_normal(face, xi, eta);
         else if (pairs[p].normal == Normal::master_facet)
           normal = -geometry.master[p].normal(face, xi, eta);
+      }
+      else if (rigid.found)
+      {
+        if (pairs[p].normal != Normal::slave)
+          normal = -rigid.normal;
       }
       else if (averages && paired)
         normal = averaged.row(s).normal;

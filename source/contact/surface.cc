@@ -39,13 +39,17 @@ namespace Nodus
     {
       has_points_.push_back(pairs[p].scheme == ContactPairParameters::Scheme::integration_point);
       directory_.collect(Region(pairs[p].slave, bodies, pair_label(pairs, p) + ", slave"), mapping, p, slave_side);
-      directory_.collect(Region(pairs[p].master, bodies, pair_label(pairs, p) + ", master"), mapping, p, master_side);
+      rigid_masters_.push_back(pairs[p].has_rigid_master()
+                                   ? std::make_unique<RigidSurface>(pairs[p].master_surface, pair_label(pairs, p))
+                                   : nullptr);
+      if (!rigid_masters_[p])
+        directory_.collect(Region(pairs[p].master, bodies, pair_label(pairs, p) + ", master"), mapping, p, master_side);
     }
     directory_.publish();
     throw_everywhere<InputError>(overlap(), communicator_);
     for (unsigned int p = 0; p < pairs.size(); ++p)
       for (const auto side : {slave_side, master_side})
-        if (directory_.size(p, side) == 0)
+        if (directory_.size(p, side) == 0 && (side == slave_side || !rigid_masters_[p]))
           throw InputError(pair_label(pairs, p) + ": the " + (side == slave_side ? "slave" : "master") +
                            " side has no face; check '" + (side == slave_side ? "Slave" : "Master") +
                            " boundary ids' and '" + (side == slave_side ? "Slave" : "Master") + " where'");
@@ -327,6 +331,13 @@ namespace Nodus
     dealii::Utilities::MPI::sum(face_size_, communicator_, face_size_);
     for (unsigned int p = 0; p < n_pairs(); ++p)
       face_size_[p] /= directory_.size(p, slave_side);
+  }
+
+  void ContactSurfaces::move_rigid_masters(const double begin, const double end)
+  {
+    for (auto &master : rigid_masters_)
+      if (master)
+        master->set_increment(begin, end);
   }
 
   bool ContactSurfaces::fetch_masters(const Vector &u)

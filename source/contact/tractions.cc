@@ -273,6 +273,11 @@ namespace Nodus
         (slave ? result.slave_force : result.master_force) += force;
         (slave ? result.slave_moment : result.master_moment) += moment;
       }
+      if (surfaces.rigid_master(surfaces.pair(i)) != nullptr)
+      {
+        result.master_force += residual.jump[i];
+        result.master_moment += dealii::cross_product_3d(jump.rigid(i).x, residual.jump[i]);
+      }
       if (!surfaces.has_status(i))
         continue;
       const StatusLedger &ledger = status.ledger(i);

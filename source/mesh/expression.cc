@@ -16,12 +16,20 @@ namespace Nodus
     std::string           message;
     try
     {
-      dealii::FunctionParser<dim> function(1);
-      function.initialize(variables,
-                          expression,
-                          {{"pi", dealii::numbers::PI}},
-                          std::count(variables.begin(), variables.end(), ',') == dim);
-      function.value(Point(0.5, 0.25, 0.125)); // parsed at the first evaluation
+      const std::map<std::string, double> constants = {{"pi", dealii::numbers::PI}};
+      if (variables == "t")
+      {
+        dealii::FunctionParser<1> function(1);
+        function.initialize(variables, expression, constants);
+        function.value(dealii::Point<1>(0.5)); // parsed at the first evaluation
+      }
+      else
+      {
+        dealii::FunctionParser<dim> function(1);
+        function.initialize(
+            variables, expression, constants, std::count(variables.begin(), variables.end(), ',') == dim);
+        function.value(Point(0.5, 0.25, 0.125));
+      }
     }
     catch (const dealii::ExceptionBase &error)
     {

@@ -216,10 +216,11 @@ namespace Nodus
                                  pair.slave.where.empty() ? "empty" : pair.slave.where,
                                  hole,
                                  "leaves the faces around this node out"});
-        cause.changes.push_back({in_pair(constraint.pair, "Slave body"),
-                                 text(pair.slave.body),
-                                 text(pair.master.body),
-                                 "slave and master change places (with their boundary ids)"});
+        if (!pair.has_rigid_master())
+          cause.changes.push_back({in_pair(constraint.pair, "Slave body"),
+                                   text(pair.slave.body),
+                                   text(pair.master.body),
+                                   "slave and master change places (with their boundary ids)"});
       }
       causes.push_back(cause);
     }
@@ -393,6 +394,7 @@ namespace Nodus
       for (unsigned int p = 0; p < evidence.pairs.size(); ++p)
       {
         const auto &pair = evidence.pairs[p];
+        const auto &keys = parameters.contact_pairs[p];
         if (pair.lost == 0 && (pair.unpaired < pair.sites || pair.sites == 0))
           continue;
         SuspectedCause cause{
@@ -402,19 +404,22 @@ namespace Nodus
                                       pair.unpaired,
                                       " of ",
                                       pair.sites,
-                                      " sites have no master point within ",
-                                      pair.reach));
+                                      " sites have no master point",
+                                      keys.has_rigid_master() ? std::string() : text(" within ", pair.reach)));
         if (pair.lost > 0)
           cause.evidence.push_back(text(pair.lost,
                                         " of them were closed when the increment began, the first at (",
                                         pair.lost_X,
                                         "): they slid off the master or went through it"));
-        const auto &keys = parameters.contact_pairs[p];
-        cause.changes.push_back({in_pair(p, "Search distance"),
-                                 keys.search_distance > 0. ? text(keys.search_distance) : "0 (automatic)",
-                                 text(4. * pair.reach),
-                                 "master points farther away are found"});
-        if (pair.lost > 0)
+        if (keys.has_rigid_master())
+          cause.evidence.push_back("the rigid " + text_of(keys.master_surface.shape) +
+                                   " has no end: its body is on the other side of the slave, or beyond its centre");
+        else
+          cause.changes.push_back({in_pair(p, "Search distance"),
+                                   keys.search_distance > 0. ? text(keys.search_distance) : "0 (automatic)",
+                                   text(4. * pair.reach),
+                                   "master points farther away are found"});
+        if (pair.lost > 0 && !keys.has_rigid_master())
           cause.changes.push_back({in_pair(p, "Projection tolerance"),
                                    text(keys.projection_tolerance),
                                    text(std::max(0.5, 2. * keys.projection_tolerance)),

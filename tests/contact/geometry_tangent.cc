@@ -1,7 +1,8 @@
 // The contact tangent with the variation of the geometry against central differences of the contact residual with
 // pairing renewed at every step, nodal forces kept (multipliers follow the areas), frictionless, on bumpy surfaces that
-// do not match. With slave nodes on the master it is exact for the nodal scheme on facets and with averaged normals. On
-// smoothed surfaces and averaged jumps, what is left out (geometry_tangent.h) stays small against what is gained.
+// do not match. With slave nodes on the master it is exact for the nodal scheme on facets, with averaged normals and on
+// rigid masters in closed form. On smoothed surfaces and averaged jumps, what is left out (geometry_tangent.h) stays
+// small against what is gained.
 
 #include <nodus/contact/geometry_tangent.h>
 
@@ -40,7 +41,8 @@ namespace
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  using Pair = ContactPairParameters;
+  using Pair  = ContactPairParameters;
+  using Shape = MasterSurfaceParameters::Shape;
   struct Kind
   {
     std::string   name;
@@ -48,19 +50,48 @@ int main(int argc, char **argv)
     Pair::Surface surface;
     Pair::Normal  normal;
     double        tolerance;
+    Shape         shape = Shape::mesh; ///< of a rigid master
   };
   const Kind kinds[] = {
       {"nodal, facets, master normals", Pair::Scheme::nodal, Pair::Surface::faceted, Pair::Normal::master_facet, 1e-5},
       {"nodal, facets, averaged normals", Pair::Scheme::nodal, Pair::Surface::faceted, Pair::Normal::averaged, 1e-5},
       {"nodal, smoothed", Pair::Scheme::nodal, Pair::Surface::smoothed, Pair::Normal::averaged, 0.003},
       {"averaged, facets", Pair::Scheme::averaged, Pair::Surface::faceted, Pair::Normal::averaged, 0.15},
-      {"averaged, smoothed", Pair::Scheme::averaged, Pair::Surface::smoothed, Pair::Normal::averaged, 0.15}};
-  for (const auto &[name, scheme, surface, normal, tolerance] : kinds)
+      {"averaged, smoothed", Pair::Scheme::averaged, Pair::Surface::smoothed, Pair::Normal::averaged, 0.15},
+      {"nodal, rigid sphere", Pair::Scheme::nodal, Pair::Surface::faceted, Pair::Normal::averaged, 1e-5, Shape::sphere},
+      {"nodal, rigid cylinder",
+       Pair::Scheme::nodal,
+       Pair::Surface::faceted,
+       Pair::Normal::averaged,
+       1e-5,
+       Shape::cylinder},
+      {"nodal, rigid paraboloid",
+       Pair::Scheme::nodal,
+       Pair::Surface::faceted,
+       Pair::Normal::averaged,
+       1e-5,
+       Shape::paraboloid},
+      {"averaged, rigid paraboloid",
+       Pair::Scheme::averaged,
+       Pair::Surface::faceted,
+       Pair::Normal::averaged,
+       0.15,
+       Shape::paraboloid}};
+  for (const auto &[name, scheme, surface, normal, tolerance, shape] : kinds)
   {
     auto p    = pair(region(2, {z_minus}), region(1, {z_plus}));
     p.scheme  = scheme;
     p.surface = surface;
     p.normal  = normal;
+    if (shape != Shape::mesh)
+    {
+      const bool apex         = shape == Shape::paraboloid;
+      p.master                = RegionParameters();
+      p.master_surface.shape  = shape;
+      p.master_surface.point  = Point(0.5, 0.4, apex ? 1. : -1.);
+      p.master_surface.axis   = apex ? Vector3({0.1, 0.2, 1.}) : Vector3({1., 0.1, 0.});
+      p.master_surface.radius = 2.;
+    }
     ContactFixture fixture({box("lower", "4,4,1", {-0.1, -0.1, 0}, {1.1, 1.1, 1}, 1, 0),
                             box("upper", "2,2,1", {0.13, 0.07, 1}, {0.93, 0.87, 2}, 1, 0)},
                            {p},

@@ -42,6 +42,14 @@ namespace
     print(name + " where", region.where);
   }
 
+  void print(const std::string &name, const PrescribedMotionParameters &motion)
+  {
+    print(name + " translation", motion.translation);
+    print(name + " rotation", motion.rotation);
+    print(name + " rotation axis", motion.rotation_axis);
+    print(name + " rotation centre", motion.rotation_centre);
+  }
+
   void print(const BodyParameters &body)
   {
     print("\nbody", body.name);
@@ -58,6 +66,8 @@ namespace
     print("local refinement", body.local_refinement);
     print("refine where", body.refine_where);
     print_choice("volumetric treatment", body.volumetric_treatment);
+    print("rigid", body.rigid);
+    print("rigid", body.motion);
     print_choice("law", body.material.law);
     print("Young's modulus", body.material.youngs_modulus);
     print("Poisson's ratio", body.material.poissons_ratio);
@@ -88,6 +98,12 @@ namespace
     print("\ncontact pair", pair.name);
     print("slave", pair.slave);
     print("master", pair.master);
+    print_choice("master surface", pair.master_surface.shape);
+    print("master point", pair.master_surface.point);
+    print("master axis", pair.master_surface.axis);
+    print("master radius", pair.master_surface.radius);
+    print("master cavity", pair.master_surface.cavity);
+    print("master", pair.master_surface.motion);
     print_choice("contact law", pair.contact_law);
     print_choice("friction law", pair.friction_law);
     print("friction coefficient", pair.friction_coefficient);

@@ -6,7 +6,7 @@
 #include <nodus/parameters.h>
 #include <nodus/types.h>
 
-#include <deal.II/base/function_parser.h>
+#include <deal.II/base/function.h>
 #include <deal.II/base/index_set.h>
 #include <deal.II/fe/mapping.h>
 #include <deal.II/lac/affine_constraints.h>
@@ -27,7 +27,7 @@ namespace Nodus
     {
       const BoundaryConditionParameters *parameters;
       Region                             region;
-      dealii::FunctionParser<dim>       *value; ///< time-dependent: set_time(t), then value(X, component)
+      dealii::Function<dim>             *value; ///< time-dependent: set_time(t), then value(X, component)
     };
 
     /// @throws InputError, on every rank: bad expression, a region without any node (displacement), face (traction,
@@ -35,12 +35,14 @@ namespace Nodus
     /// freedom at the start, the middle or the end of the time in which both act. The predicate of a region is
     /// evaluated at nodes, at the centres of faces and at the centres of cells, respectively; body forces ignore
     /// boundary ids. @p interval_ends: the times at which conditions may begin or cease to act, and the last of all.
-    /// Bodies, degrees of freedom and mapping outlive the conditions.
+    /// All nodes of the rigid ones among @p body_parameters (of all bodies, or empty) are prescribed, too. Bodies,
+    /// degrees of freedom and mapping outlive the conditions.
     BoundaryConditions(const std::vector<BoundaryConditionParameters> &parameters,
                        const Bodies                                   &bodies,
                        const dealii::DoFHandler<dim>                  &dof_handler,
                        const dealii::Mapping<dim>                     &mapping,
-                       const std::vector<double>                      &interval_ends);
+                       const std::vector<double>                      &interval_ends,
+                       const std::vector<BodyParameters>              &body_parameters = {});
 
     /// Evaluates the prescribed displacements that act at time @p t. @returns whether other ones do than before: then
     /// constraints and reaction regions are new. Collective.
@@ -101,19 +103,20 @@ namespace Nodus
     void                     make_constraints();
     std::string              label(unsigned int condition) const;
 
-    const Bodies                                             &bodies_;
-    const dealii::DoFHandler<dim>                            &dof_handler_;
-    const dealii::Mapping<dim>                               &mapping_;
-    std::vector<Stage>                                        stages_;
-    unsigned int                                              stage_ = 0; ///< the one at hand
-    std::vector<BoundaryConditionParameters>                  parameters_;
-    std::vector<std::unique_ptr<dealii::FunctionParser<dim>>> functions_;
-    std::vector<Prescribed>                                   prescribed_; ///< locally relevant
-    HangingNodes                                              hanging_;
-    dealii::AffineConstraints<double>                         lines_; ///< not closed: hanging nodes unresolved
-    dealii::AffineConstraints<double>                         homogeneous_, increment_;
-    std::vector<Load>                                         loads_;
-    std::vector<ReactionRegion>                               reaction_regions_;
+    const Bodies                                       &bodies_;
+    const dealii::DoFHandler<dim>                      &dof_handler_;
+    const dealii::Mapping<dim>                         &mapping_;
+    std::vector<Stage>                                  stages_;
+    unsigned int                                        stage_ = 0; ///< the one at hand
+    unsigned int                                        n_given_;   ///< conditions; those of rigid bodies follow
+    std::vector<BoundaryConditionParameters>            parameters_;
+    std::vector<std::unique_ptr<dealii::Function<dim>>> functions_;
+    std::vector<Prescribed>                             prescribed_; ///< locally relevant
+    HangingNodes                                        hanging_;
+    dealii::AffineConstraints<double>                   lines_;      ///< not closed: hanging nodes unresolved
+    dealii::AffineConstraints<double>                   homogeneous_, increment_;
+    std::vector<Load>                                   loads_;
+    std::vector<ReactionRegion>                         reaction_regions_;
   };
 } // namespace Nodus
 

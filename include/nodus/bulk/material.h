@@ -25,6 +25,12 @@ namespace Nodus
       return false;
     }
 
+    /// True for RigidMaterial.
+    virtual bool is_rigid() const
+    {
+      return false;
+    }
+
     /// Numbers of the state at a point; 0: hyperelastic.
     virtual unsigned int n_state() const
     {

@@ -97,6 +97,7 @@ namespace Nodus
     void add_initial_states(const Material &material);
     bool is_last(const Vector &u, double t, const dealii::AffineConstraints<double> *constraints, NodeMatrix *tangent);
     void note_prescribed(const dealii::AffineConstraints<double> *constraints);
+    void integrate_rigid(unsigned int batch, Lanes &det_F);
     void prefetch(const Batch &batch, NodeMatrix &tangent) const;
     /// The cell in @p lane of the batch at hand.
     void add_loads(unsigned int cell, unsigned int lane, bool with_tangent);

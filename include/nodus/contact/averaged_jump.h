@@ -28,6 +28,7 @@ namespace Nodus
       double             area = 0.; ///< m_j = int psi_j over the covered part [area]
       std::vector<Entry> slave, master;
       Vector3            offset; ///< of smoothed surfaces: jump of the positions minus jump of the nodal ones [length]
+      RigidPart          rigid;
       Vector3            normal; ///< averaged, unit, from slave to master
     };
 
@@ -49,7 +50,8 @@ namespace Nodus
       return rows_[slave];
     }
 
-    /// A slave face of this rank: its points and the share of their jumps in the rows of its nodes.
+    /// A slave face of this rank: its points (of rigid masters without master) and the share of their jumps in the rows
+    /// of its nodes.
     struct Face
     {
       unsigned int             pair, face;

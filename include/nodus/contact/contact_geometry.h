@@ -52,9 +52,15 @@ namespace Nodus
                     const ContactSurfaces                    &surfaces,
                     const std::vector<Point>                 &positions);
 
-    std::vector<SurfaceGeometry> slave, master;
-    std::vector<MasterSearch>    search;
-    std::vector<double>          reach; ///< farther master points are no partners [length]
+    /// Point of a rigid master that is a partner of @p p, by the same rules as those of MasterSearch.
+    RigidPoint closest_on_rigid(unsigned int pair, const Point &p, const Vector3 &slave_normal) const;
+    /// Position of a site.
+    Point position(const ContactSurfaces &surfaces, unsigned int site) const;
+
+    std::vector<SurfaceGeometry>      slave, master;
+    std::vector<MasterSearch>         search;
+    std::vector<const RigidSurface *> rigid; ///< masters without faces, or nullptr
+    std::vector<double>               reach; ///< farther master points are no partners [length]
   };
 
   /// Closest point of face @p f to @p p: local coordinates in [0, 1]^2 (clamped at edges and vertices).

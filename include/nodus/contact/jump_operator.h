@@ -27,7 +27,8 @@ namespace Nodus
                const Pairing                            &pairing,
                const AveragedJump                       &averaged);
 
-    /// Entries of the row: slave nodes (weights of sum 1) from begin to middle, master nodes (of sum -1) to end.
+    /// Entries of the row: slave nodes (weights of sum 1) from begin to middle, master nodes (of sum -1, none
+    /// of a rigid master) to end.
     const Entry *begin(const unsigned int site) const
     {
       return entries_.data() + start_[site];
@@ -49,7 +50,12 @@ namespace Nodus
         result += e->weight * displacement[e->node];
       return result;
     }
-    /// Jump of positions: with what smoothed surfaces add.
+    /// Jump of the displacement of the increment: with what rigid masters add.
+    Vector3 jump_of_increment(const unsigned int site, const std::vector<Vector3> &increment) const
+    {
+      return jump(site, increment) - rigid_[site].moved;
+    }
+    /// Jump of positions: with what rigid masters and smoothed surfaces add.
     Vector3 jump(const unsigned int site, const std::vector<Point> &positions) const
     {
       Vector3 result = offset_[site];
@@ -57,11 +63,17 @@ namespace Nodus
         result += e->weight * positions[e->node];
       return result;
     }
+    /// Part of a rigid master in the jump, zero where there is none.
+    const RigidPart &rigid(const unsigned int site) const
+    {
+      return rigid_[site];
+    }
 
   private:
     std::vector<Entry>        entries_;
     std::vector<unsigned int> start_, middle_;
     std::vector<Vector3>      offset_;
+    std::vector<RigidPart>    rigid_;
   };
 } // namespace Nodus
 

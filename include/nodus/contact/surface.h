@@ -3,6 +3,7 @@
 
 #include <nodus/contact/face_directory.h>
 #include <nodus/contact/ghost_exchange.h>
+#include <nodus/contact/rigid_surface.h>
 #include <nodus/contact/surface_face.h>
 #include <nodus/mesh/bodies.h>
 #include <nodus/parameters.h>
@@ -13,7 +14,9 @@
 #include <deal.II/fe/mapping.h>
 #include <deal.II/lac/affine_constraints.h>
 
+#include <algorithm>
 #include <array>
+#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -216,6 +219,18 @@ namespace Nodus
       return layout_;
     }
 
+    /// The master of a pair without master faces, or nullptr.
+    const RigidSurface *rigid_master(const unsigned int pair) const
+    {
+      return rigid_masters_[pair].get();
+    }
+    bool has_rigid_masters() const
+    {
+      return std::any_of(rigid_masters_.begin(), rigid_masters_.end(), [](const auto &master) { return bool(master); });
+    }
+    /// Moves them to where they are at the end of an increment. @throws InputError on every rank
+    void move_rigid_masters(double begin, double end);
+
     /// Fetches the master faces near this rank's slave faces at displacement @p u, unless no surface node has moved
     /// much since the last time; returns whether nodes() and master_faces() have changed. Collective.
     bool fetch_masters(const Vector &u);
@@ -269,6 +284,7 @@ namespace Nodus
     std::vector<DoFIndex>                      order_;      ///< of each site, complete for owned ones
     GhostExchange                              slave_exchange_, site_exchange_;
     std::vector<std::vector<SurfaceFace>>      slave_faces_, master_faces_;
+    std::vector<std::unique_ptr<RigidSurface>> rigid_masters_; ///< of each pair, or nullptr
     std::vector<double>                        face_size_;
     Vector                                     fixed_mask_, fetched_at_; ///< fetched_at_: displacement
     std::vector<std::array<bool, dim>>         fixed_;

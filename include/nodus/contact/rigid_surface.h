@@ -1,0 +1,62 @@
+#ifndef nodus_contact_rigid_surface_h
+#define nodus_contact_rigid_surface_h
+
+#include <nodus/mesh/prescribed_motion.h>
+#include <nodus/parameters.h>
+
+#include <array>
+#include <string>
+
+namespace Nodus
+{
+  /// The point of a rigid surface closest to another point.
+  struct RigidPoint
+  {
+    bool                   found = false; ///< false where the closest point is not unique
+    Point                  x;
+    Vector3                normal;                 ///< unit, out of the rigid body
+    double                 height = 0.;            ///< of the other point along the normal [length]
+    std::array<Vector3, 2> direction;              ///< unit, of the principal curvatures
+    std::array<double, 2>  curvature = {{0., 0.}}; ///< > 0 where the rigid body is convex [1/length]
+
+    /// Derivatives of the normal and of x with respect to the other point.
+    dealii::Tensor<2, dim> normal_derivative() const;
+    dealii::Tensor<2, dim> slide() const;
+  };
+
+  /// The part of a rigid master in a jump: where it is, and how far its material has come in the increment [length].
+  struct RigidPart
+  {
+    Vector3 x, moved;
+  };
+
+  /// The surface of a rigid body in closed form that moves as prescribed.
+  class RigidSurface
+  {
+  public:
+    /// @p label: for messages. @throws InputError
+    RigidSurface(const MasterSurfaceParameters &parameters, const std::string &label);
+
+    /// The increment at hand; the surface is where it is at its end. @throws InputError on every rank
+    void set_increment(double begin, double end);
+
+    RigidPoint closest(const Point &p) const;
+
+    /// Displacement in the increment of the material point of the rigid body that is at @p x now.
+    Vector3 moved(const Point &x) const
+    {
+      return x - before_.to(now_.from(x));
+    }
+
+  private:
+    RigidPoint closest_on_paraboloid(const Point &p) const;
+
+    MasterSurfaceParameters parameters_;
+    PrescribedMotion        motion_;
+    Placement               before_, now_;
+    Point                   point_; ///< now
+    Vector3                 axis_;  ///< unit, now; zero for a sphere
+  };
+} // namespace Nodus
+
+#endif
