@@ -78,6 +78,13 @@ namespace Nodus
     {
       return now_.contact[site] && -now_.threshold[site] > threshold_floor_[surfaces_.pair(site)];
     }
+    /// An integration point that needs no status for friction and whose pressure is lambda - rho_n d_n: see update().
+    bool projected(const unsigned int site) const
+    {
+      return in_the_mean_ && can_project(surfaces_.pair(site));
+    }
+    /// Pairs whose consistent weights are lumped for now: see update().
+    std::vector<bool> lumped() const;
     ContactStatus status(const unsigned int site) const
     {
       return !contact(site)                  ? ContactStatus::open
@@ -161,6 +168,7 @@ namespace Nodus
       unsigned int              period  = 0;     ///< > 0: this status vector was visited that many passes ago
       bool                      cycles  = false; ///< merged loop: visited again too often
       unsigned int              frozen  = 0;     ///< sites that keep their status from here on, on all ranks
+      bool                      to_means = false; ///< from here on laws hold in the mean where that is possible
       std::vector<unsigned int> sites;           ///< of this rank that changed
     };
     /// Tests every site and changes those that contradict their status (eq. 2, 3, 7, 8); begin_loop() comes first. Once
@@ -222,6 +230,8 @@ namespace Nodus
     {
       return pairs_[pair].initial_overclosure == ContactPairParameters::InitialOverclosure::interference;
     }
+    bool              can_project(unsigned int pair) const;
+    bool              can_lump(unsigned int pair) const;
     void              update_floor();
     void              note_friction();
     std::vector<char> code() const;
@@ -246,6 +256,7 @@ namespace Nodus
     std::vector<std::array<double, 3>>        seen_; ///< last violation while open, slip, stick since a cycle; -1: none
     std::vector<char>                         had_friction_; ///< at the last test: the iterate knows of friction there
     bool                                      one_at_a_time_ = false, freezes_ = false, merged_ = false;
+    bool                                      in_the_mean_ = false; ///< in this attempt at the increment
     unsigned int                              returns_ = 0; ///< to a visited vector, in this loop
   };
 } // namespace Nodus
