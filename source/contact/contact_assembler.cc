@@ -165,12 +165,12 @@ namespace Nodus
         const double       phi     = point.shape[a];
         const SitePairing &pairing = pairing_[k];
         const bool         contact = status_.contact(filter), friction = status_.friction(filter);
-        node.slave   = k;
-        node.contact = contact ? phi : 0.;
-        node.open    = contact ? 0. : phi;
-        const bool         stick = status_.stick(filter) && !status_.projected(filter);
-        node.stick               = friction && stick ? phi : 0.;
-        node.slip                = friction && !stick ? phi : 0.;
+        node.slave       = k;
+        node.contact     = contact ? phi : 0.;
+        node.open        = contact ? 0. : phi;
+        const bool stick = status_.stick(filter) && !status_.projected(filter);
+        node.stick       = friction && stick ? phi : 0.;
+        node.slip        = friction && !stick ? phi : 0.;
         for (unsigned int i = 0; i < 2; ++i)
         {
           const bool carries   = friction && pairing.tangent_free[i];
@@ -212,12 +212,12 @@ namespace Nodus
         slip_stick += jump.stick * slip;
         slip_slip += jump.slip * slip;
       }
-      const double h_n   = status_.normal_augmentation(point.slaves[0]);
+      const double h_n = status_.normal_augmentation(point.slaves[0]);
       // the normal law of a point is projected, too: its pressure is lambda - h_n d_n where that is negative
       const double stiffness = pointwise && status_.projected(point.site) ? h_n : 0.;
-      const double h_tau = status_.tangential_augmentation(point.slaves[0], threshold);
-      Column3      pi    = Column3::Zero();
-      Matrix3      K_B   = Matrix3::Zero();
+      const double h_tau     = status_.tangential_augmentation(point.slaves[0], threshold);
+      Column3      pi        = Column3::Zero();
+      Matrix3      K_B       = Matrix3::Zero();
       if (slips)
         direction(Lambda_slip + h_tau * slip_slip, pi, K_B);
 
@@ -232,8 +232,8 @@ namespace Nodus
       {
         const PointJump &i  = jumps[a];
         const unsigned   ia = 3 * a;
-        r.segment<3>(ia)    = -W * i.contact * (lambda_c - stiffness * distance) * i.normal - Wt * i.stick * i.projector * Lambda_stick -
-                           Wt * i.slip * i.projector * pi;
+        r.segment<3>(ia)    = -W * i.contact * (lambda_c - stiffness * distance) * i.normal -
+                           Wt * i.stick * i.projector * Lambda_stick - Wt * i.slip * i.projector * pi;
         r_t.segment<3>(ia) = -W * i.projector * ((n_nodes > 1 ? i.stick : 0.) * Lambda_stick + i.slip * pi) -
                              Wt * i.slip * i.projector * pi_t;
         b.segment<3>(ia) = eigen(jump_.jump(i.site, state.prescribed));

@@ -183,6 +183,14 @@ namespace Nodus
            pairs_[pair].weights == ContactPairParameters::Weights::consistent && limits_[pair].exists();
   }
 
+  bool Status::can_hold_in_the_mean() const
+  {
+    for (unsigned int p = 0; p < pairs_.size(); ++p)
+      if (can_project(p) || can_lump(p))
+        return true;
+    return false;
+  }
+
   std::vector<bool> Status::lumped() const
   {
     std::vector<bool> result;
@@ -323,7 +331,7 @@ namespace Nodus
       ledger_[k].last = found[i];
     }
     result.changes = dealii::Utilities::MPI::sum<unsigned int>(result.sites.size(), communicator);
-    if (result.changes > 0)
+    if (result.changes > 0 || in_the_mean_)
     {
       surfaces_.site_exchange().update(now_.contact);
       surfaces_.site_exchange().update(now_.stick);
@@ -345,12 +353,10 @@ namespace Nodus
     const auto met = std::find(differs.begin(), differs.end(), 0u);
     if (met == differs.end())
       return;
-    update.period = met - differs.begin() + 1;
-    update.cycles = merged_ && ++returns_ > tolerated_returns;
-    if (!in_the_mean_ && (update.cycles || !merged_))
-      for (unsigned int p = 0; p < pairs_.size(); ++p)
-        update.to_means = update.to_means || can_project(p) || can_lump(p);
-    freezes_ = freezes_ || (one_at_a_time_ && !update.to_means);
+    update.period   = met - differs.begin() + 1;
+    update.cycles   = merged_ && ++returns_ > tolerated_returns;
+    update.to_means = !in_the_mean_ && (update.cycles || !merged_) && can_hold_in_the_mean();
+    freezes_        = freezes_ || (one_at_a_time_ && !update.to_means);
     std::vector<unsigned int> cycling;
     for (unsigned int back = 0; back < update.period; ++back)
     {
@@ -368,7 +374,7 @@ namespace Nodus
     }
     if (update.to_means)
     {
-      in_the_mean_    = true;
+      hold_in_the_mean();
       update.cycles = false;
       returns_      = 0;
     }

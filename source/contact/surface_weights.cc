@@ -27,10 +27,10 @@ namespace Nodus
                                const std::vector<Point>                 &X,
                                const std::vector<bool>                  &lumped)
   {
-    using Scheme           = ContactPairParameters::Scheme;
-    const auto  consistent = [&](const unsigned int p)
+    using Scheme          = ContactPairParameters::Scheme;
+    const auto consistent = [&](const unsigned int p)
     { return pairs[p].weights == ContactPairParameters::Weights::consistent && (lumped.empty() || !lumped[p]); };
-    const auto &slaves     = surfaces.slave_nodes();
+    const auto &slaves = surfaces.slave_nodes();
     points_.clear();
     area_.assign(slaves.size(), 0.);
 
