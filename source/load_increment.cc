@@ -32,7 +32,9 @@ namespace Nodus
   }
 
   /// The loops as the parameters ask for them; where a merged iteration fails, once more with the geometry as a loop,
-  /// and at last with all three as loops. Where thresholds were to be a loop and that fails, they follow the pressure.
+  /// and at last with all three as loops. In each of these attempts laws hold in the mean from where statuses cycle, if
+  /// sites share multipliers (Status::hold_in_the_mean). Where thresholds were to be a loop and that fails, they follow
+  /// the pressure.
   void ContactProblem::Implementation::solve_increment()
   {
     counts = IterationCounts();
