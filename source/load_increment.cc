@@ -32,7 +32,9 @@ namespace Nodus
   }
 
   /// The loops as the parameters ask for them; where a merged iteration fails, once more with the geometry as a loop,
-  /// and at last with all three as loops. Where thresholds were to be a loop and that fails, they follow the pressure.
+  /// and at last with all three as loops. In each of these attempts laws hold in the mean from where statuses cycle, if
+  /// sites share multipliers (Status::hold_in_the_mean). Where thresholds were to be a loop and that fails, they follow
+  /// the pressure.
   void ContactProblem::Implementation::solve_increment()
   {
     counts = IterationCounts();
@@ -123,6 +125,8 @@ namespace Nodus
         } while (!statuses_converged(statuses));
       } while (!threshold_converged(threshold, secant));
     } while (!geometry_converged(geometry));
+    if (!merged.status)
+      check_frozen_statuses();
   }
 
   void
@@ -142,8 +146,12 @@ namespace Nodus
     if (update.frozen > 0)
       console.remark("the statuses cycle: " + std::to_string(update.frozen) +
                      " sites keep the one that they contradict least: " + cycling);
-    if (!loop.finished(update.changes, first_changed))
-      return false;
+    return loop.finished(update.changes, first_changed);
+  }
+
+  /// Once all loops have converged: thresholds that are not final leave nodes neither open nor closed.
+  void ContactProblem::Implementation::check_frozen_statuses()
+  {
     const Status::Violation violation = status->frozen_violation(
         status_input(parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state));
     if (violation.sites > 0)
@@ -158,7 +166,6 @@ namespace Nodus
                             SolverFailure::Kind::status_cycle);
       console.remark("warning: " + text.str());
     }
-    return true;
   }
 
   Status::Update ContactProblem::Implementation::update_statuses(const bool closing_only)
@@ -178,7 +185,14 @@ namespace Nodus
       if (update.cycles)
         throw SolverFailure("the statuses cycle; the nodes that change back and forth: " + cycling,
                             SolverFailure::Kind::status_cycle);
-      if (update.period > 0)
+      if (update.to_means)
+      {
+        console.remark("the statuses cycle: from here the laws hold in the mean (multipliers projected at integration "
+                       "points, weights lumped)");
+        pass_to_means();
+        ++counts.fallbacks;
+      }
+      else if (update.period > 0)
       {
         cycling.clear();
         for (const std::string &locus : loci)

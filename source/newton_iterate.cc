@@ -44,7 +44,7 @@ namespace Nodus
     averaged.compute(pairs, *surfaces, *geometry, paired_at, X);
     pairing.project(pairs, *surfaces, *geometry, averaged);
     jump.build(pairs, *surfaces, *geometry, pairing, averaged);
-    weights.compute(pairs, *surfaces, averaged, paired_at, X);
+    weigh_surfaces();
   }
 
   /// Freezes the geometry at the current positions and carries statuses and multipliers over.
@@ -99,6 +99,29 @@ namespace Nodus
     nodal_area = weights.area();
     solution.block(1).compress(dealii::VectorOperation::insert);
     solution.block(2).compress(dealii::VectorOperation::insert);
+    gather_state();
+  }
+
+  void ContactProblem::Implementation::weigh_surfaces()
+  {
+    weights.compute(parameters.contact_pairs,
+                    *surfaces,
+                    averaged,
+                    paired_at,
+                    surfaces->positions(std::vector<Vector3>(surfaces->nodes().size())),
+                    status->lumped());
+  }
+
+  /// Multipliers of lumped weights are the nodal means that those of consistent weights had.
+  void ContactProblem::Implementation::pass_to_means()
+  {
+    const std::vector<double> mean   = site_pressure(*surfaces, weights, *status, state.lambda);
+    const std::vector<bool>   lumped = status->lumped();
+    weigh_surfaces();
+    for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
+      if (lumped[surfaces->pair(k)])
+        solution.block(1)(surfaces->multiplier(k)) = mean[k];
+    solution.block(1).compress(dealii::VectorOperation::insert);
     gather_state();
   }
 

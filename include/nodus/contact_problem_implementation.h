@@ -59,6 +59,9 @@ namespace Nodus
     void           solve_loops();
     void           pair_surfaces();
     void           freeze_geometry();
+    void           weigh_surfaces();
+    void           pass_to_means();
+    void           check_frozen_statuses();
     void           note_pass(const FixedPointLoop &loop, double value, const std::string &worst);
     bool           geometry_converged(FixedPointLoop &loop);
     bool           threshold_converged(FixedPointLoop &loop, SecantAcceleration &secant);

@@ -165,11 +165,12 @@ namespace Nodus
         const double       phi     = point.shape[a];
         const SitePairing &pairing = pairing_[k];
         const bool         contact = status_.contact(filter), friction = status_.friction(filter);
-        node.slave   = k;
-        node.contact = contact ? phi : 0.;
-        node.open    = contact ? 0. : phi;
-        node.stick   = friction && status_.stick(filter) ? phi : 0.;
-        node.slip    = friction && !status_.stick(filter) ? phi : 0.;
+        node.slave       = k;
+        node.contact     = contact ? phi : 0.;
+        node.open        = contact ? 0. : phi;
+        const bool stick = status_.stick(filter) && !status_.projected(filter);
+        node.stick       = friction && stick ? phi : 0.;
+        node.slip        = friction && !stick ? phi : 0.;
         for (unsigned int i = 0; i < 2; ++i)
         {
           const bool carries   = friction && pairing.tangent_free[i];
@@ -194,8 +195,9 @@ namespace Nodus
         const bool         friction = status_.friction(s);
         jump.site                   = s;
         jump.contact                = status_.contact(s) ? phi : 0.;
-        jump.stick                  = friction && status_.stick(s) ? phi : 0.;
-        jump.slip                   = friction && !status_.stick(s) ? phi : 0.;
+        const bool stick            = status_.stick(s) && !status_.projected(s);
+        jump.stick                  = friction && stick ? phi : 0.;
+        jump.slip                   = friction && !stick ? phi : 0.;
         jump.normal                 = eigen(pairing_[s].normal);
         jump.projector.setZero();
         for (unsigned int i = 0; i < 2; ++i)
@@ -210,10 +212,12 @@ namespace Nodus
         slip_stick += jump.stick * slip;
         slip_slip += jump.slip * slip;
       }
-      const double h_n   = status_.normal_augmentation(point.slaves[0]);
-      const double h_tau = status_.tangential_augmentation(point.slaves[0], threshold);
-      Column3      pi    = Column3::Zero();
-      Matrix3      K_B   = Matrix3::Zero();
+      const double h_n = status_.normal_augmentation(point.slaves[0]);
+      // the normal law of a point is projected, too: its pressure is lambda - h_n d_n where that is negative
+      const double stiffness = pointwise && status_.projected(point.site) ? h_n : 0.;
+      const double h_tau     = status_.tangential_augmentation(point.slaves[0], threshold);
+      Column3      pi        = Column3::Zero();
+      Matrix3      K_B       = Matrix3::Zero();
       if (slips)
         direction(Lambda_slip + h_tau * slip_slip, pi, K_B);
 
@@ -228,8 +232,8 @@ namespace Nodus
       {
         const PointJump &i  = jumps[a];
         const unsigned   ia = 3 * a;
-        r.segment<3>(ia)    = -W * i.contact * lambda_c * i.normal - Wt * i.stick * i.projector * Lambda_stick -
-                           Wt * i.slip * i.projector * pi;
+        r.segment<3>(ia)    = -W * i.contact * (lambda_c - stiffness * distance) * i.normal -
+                           Wt * i.stick * i.projector * Lambda_stick - Wt * i.slip * i.projector * pi;
         r_t.segment<3>(ia) = -W * i.projector * ((n_nodes > 1 ? i.stick : 0.) * Lambda_stick + i.slip * pi) -
                              Wt * i.slip * i.projector * pi_t;
         b.segment<3>(ia) = eigen(jump_.jump(i.site, state.prescribed));
@@ -246,9 +250,11 @@ namespace Nodus
             A.block<3, 2>(ia, jc + 1) -= Wt * i.slip * j.slip * i.projector * K_B * j.tangent.transpose();
           A.block<3, 3>(jc, ia) = A.block<3, 3>(ia, jc).transpose().eval();
         }
+        if (stiffness > 0. && i.contact != 0.)
+          A.block<3, 3>(ia, ia) = W * stiffness * i.normal * i.normal.transpose();
         if (slips)
           for (unsigned int c = 0; c < n_jumps; ++c)
-            A.block<3, 3>(ia, 3 * c) = -Wt * h_tau * i.slip * jumps[c].slip * i.projector * K_B * jumps[c].projector;
+            A.block<3, 3>(ia, 3 * c) += -Wt * h_tau * i.slip * jumps[c].slip * i.projector * K_B * jumps[c].projector;
       }
       for (unsigned int a = 0; a < n_nodes; ++a)
       {
@@ -393,7 +399,7 @@ namespace Nodus
       if (residual.friction_weight[k] > 0.)
       {
         const double threshold = residual.friction_weight[k] / area;
-        const bool   slips     = surfaces_.has_status(k) && !status_.stick(k);
+        const bool   slips     = surfaces_.has_status(k) && (!status_.stick(k) || status_.projected(k));
         scale = area * threshold * (slips ? 1. / status_.tangential_augmentation(k, -threshold) : length);
       }
       norm = std::max(norm, std::hypot(residual.Lambda[k][0], residual.Lambda[k][1]) / scale);

@@ -12,6 +12,8 @@ namespace Nodus
   {
     /// Slave faces may be larger than the opposite ones by this much before they are split.
     constexpr double tolerated_size_ratio = 4. / 3.;
+    /// Points on the rim of the master surface face it in spite of round-off; in face sizes.
+    constexpr double tolerated_overhang = 1e-6;
 
     /// What slave faces say about master faces, on its way to the owners of these.
     class MasterMarks
@@ -57,7 +59,7 @@ namespace Nodus
     {
       const SurfaceGeometry &slave = geometry.slave[pair];
       return geometry.search[pair].closest(
-          slave.at(face, xi, eta).x, slave.normal(face, xi, eta), geometry.reach[pair], 0.);
+          slave.at(face, xi, eta).x, slave.normal(face, xi, eta), geometry.reach[pair], tolerated_overhang);
     }
 
     template <typename Function>

@@ -170,8 +170,38 @@ namespace Nodus
     dealii::Utilities::MPI::max(threshold_floor_, surfaces_.layout().communicator, threshold_floor_);
   }
 
+  bool Status::can_project(const unsigned int pair) const
+  {
+    return pairs_[pair].scheme == ContactPairParameters::Scheme::integration_point &&
+           pairs_[pair].contact_law == ContactLaw::unilateral;
+  }
+
+  bool Status::can_lump(const unsigned int pair) const
+  {
+    // without friction the nodal means obey the same equations for all weights
+    return pairs_[pair].scheme != ContactPairParameters::Scheme::integration_point &&
+           pairs_[pair].weights == ContactPairParameters::Weights::consistent && limits_[pair].exists();
+  }
+
+  bool Status::can_hold_in_the_mean() const
+  {
+    for (unsigned int p = 0; p < pairs_.size(); ++p)
+      if (can_project(p) || can_lump(p))
+        return true;
+    return false;
+  }
+
+  std::vector<bool> Status::lumped() const
+  {
+    std::vector<bool> result;
+    for (unsigned int p = 0; p < pairs_.size(); ++p)
+      result.push_back(in_the_mean_ && can_lump(p));
+    return result;
+  }
+
   void Status::begin_increment()
   {
+    in_the_mean_ = false;
     ledger_.assign(ledger_.size(), StatusLedger());
   }
 
@@ -199,7 +229,7 @@ namespace Nodus
   {
     std::vector<char> c(now_.contact.size());
     for (unsigned int k = 0; k < c.size(); ++k)
-      c[k] = static_cast<char>(status(k));
+      c[k] = static_cast<char>(projected(k) && contact(k) ? ContactStatus::slip : status(k));
     return c;
   }
 
@@ -258,6 +288,11 @@ namespace Nodus
       {
         double              size;
         const Contradiction c = contradiction(input, k, largest[surfaces_.pair(k)], size);
+        if (projected(k) && (c == Contradiction::over_cone || c == Contradiction::against_slip))
+        {
+          now_.stick[k] = c == Contradiction::against_slip; // for the reports: the law itself needs no status
+          continue;
+        }
         if (one_at_a_time_ || freezes_)
           seen_[k][static_cast<unsigned int>(status(k))] = size;
         if (c == Contradiction::none || frozen_[k] || (closing_only && c != Contradiction::penetration))
@@ -296,7 +331,7 @@ namespace Nodus
       ledger_[k].last = found[i];
     }
     result.changes = dealii::Utilities::MPI::sum<unsigned int>(result.sites.size(), communicator);
-    if (result.changes > 0)
+    if (result.changes > 0 || in_the_mean_)
     {
       surfaces_.site_exchange().update(now_.contact);
       surfaces_.site_exchange().update(now_.stick);
@@ -318,8 +353,10 @@ namespace Nodus
     const auto met = std::find(differs.begin(), differs.end(), 0u);
     if (met == differs.end())
       return;
-    update.period = met - differs.begin() + 1;
-    freezes_      = freezes_ || one_at_a_time_;
+    update.period   = met - differs.begin() + 1;
+    update.cycles   = merged_ && ++returns_ > tolerated_returns;
+    update.to_means = !in_the_mean_ && (update.cycles || !merged_) && can_hold_in_the_mean();
+    freezes_        = freezes_ || (one_at_a_time_ && !update.to_means);
     std::vector<unsigned int> cycling;
     for (unsigned int back = 0; back < update.period; ++back)
     {
@@ -335,13 +372,17 @@ namespace Nodus
           }
         }
     }
-    if (merged_)
-      update.cycles = ++returns_ > tolerated_returns;
+    if (update.to_means)
+    {
+      hold_in_the_mean();
+      update.cycles = false;
+      returns_      = 0;
+    }
     else if (freezes_)
       update.frozen = freeze(cycling);
-    else if (!one_at_a_time_)
+    else if (!merged_ && !one_at_a_time_)
       seen_.assign(now_.contact.size(), {{-1., -1., -1.}});
-    one_at_a_time_ = !merged_ && !freezes_;
+    one_at_a_time_ = !merged_ && !freezes_ && !update.to_means;
     visited_.assign(1, code());
   }
 

@@ -24,11 +24,13 @@ namespace Nodus
                                const ContactSurfaces                    &surfaces,
                                const AveragedJump                       &averaged,
                                const std::vector<Point>                 &x,
-                               const std::vector<Point>                 &X)
+                               const std::vector<Point>                 &X,
+                               const std::vector<bool>                  &lumped)
   {
-    using Scheme           = ContactPairParameters::Scheme;
-    const auto  consistent = ContactPairParameters::Weights::consistent;
-    const auto &slaves     = surfaces.slave_nodes();
+    using Scheme          = ContactPairParameters::Scheme;
+    const auto consistent = [&](const unsigned int p)
+    { return pairs[p].weights == ContactPairParameters::Weights::consistent && (lumped.empty() || !lumped[p]); };
+    const auto &slaves = surfaces.slave_nodes();
     points_.clear();
     area_.assign(slaves.size(), 0.);
 
@@ -62,7 +64,7 @@ namespace Nodus
         for (unsigned int q = 0; q < rule.size(); ++q)
         {
           ContactPoint point = add(face, shapes[q], rule.weight(q), p);
-          if (pairs[p].weights == consistent)
+          if (consistent(p))
             points_.push_back(std::move(point));
         }
     }
@@ -83,7 +85,7 @@ namespace Nodus
       const auto &pair = pairs[slaves[k].pair];
       if (pair.scheme == Scheme::averaged && averaged.covered(k))
         area_[k] = averaged.row(k).area;
-      if (pair.scheme != Scheme::integration_point && pair.weights != consistent)
+      if (pair.scheme != Scheme::integration_point && !consistent(slaves[k].pair))
         points_.push_back({area_[k], {k}, {1.}, surfaces.nodes()[slaves[k].node].owner, no_site});
     }
   }

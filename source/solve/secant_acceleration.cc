@@ -7,8 +7,9 @@ namespace Nodus
 {
   namespace
   {
-    /// Bounds of omega: factors of the map from -infinity (1) to 0.9 (-9); beyond, two passes tell too little.
-    constexpr double smallest_omega = -9., largest_omega = 1.;
+    /// Bounds of omega: factors of the map up to 0.9 (-9) and from 1.1 (11), and all that are negative (0 to 1);
+    /// between, two passes tell too little.
+    constexpr double smallest_omega = -9., largest_omega = 11.;
     /// Between these, factors from -0.5 to 0.5, the plain iteration is fast enough and does not mix directions.
     constexpr double plain_from = -1., plain_to = 1. / 3.;
   } // namespace

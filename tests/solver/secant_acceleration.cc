@@ -1,5 +1,5 @@
 // Fixed points of linear maps x -> a + k x by crossed secants: one secant solves any factor k in its bounds, those that
-// a plain iteration cycles with (-1) or runs away from (-1.74, the wedge of theory section 5.4) included; with two
+// a plain iteration cycles with (-1) or runs away from (-1.74, the wedge of theory section 5.4; 1.5) included; with two
 // factors the error still falls. Where a plain iteration contracts by 2 it is left alone.
 
 #include <nodus/solve/secant_acceleration.h>
@@ -15,7 +15,7 @@ int main(int argc, char **argv)
   const unsigned int                       rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
   const unsigned int                       n    = rank == 0 ? 3 : 2; // the norms are those of all ranks
 
-  for (const double k : {-1.74, -1., -0.6, 0., 0.6, 0.85})
+  for (const double k : {-1.74, -1., -0.6, 0., 0.6, 0.85, 1.5})
   {
     Nodus::SecantAcceleration secant(MPI_COMM_WORLD);
     std::vector<double>       x(n, 0.), image(n);

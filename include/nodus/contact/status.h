@@ -78,7 +78,14 @@ namespace Nodus
     {
       return now_.contact[site] && -now_.threshold[site] > threshold_floor_[surfaces_.pair(site)];
     }
-    ContactStatus status(const unsigned int site) const
+    /// An integration point that holds its laws in the mean.
+    bool projected(const unsigned int site) const
+    {
+      return in_the_mean_ && can_project(surfaces_.pair(site));
+    }
+    /// Pairs whose consistent weights are lumped for now, to hold their laws in the mean.
+    std::vector<bool> lumped() const;
+    ContactStatus     status(const unsigned int site) const
     {
       return !contact(site)                  ? ContactStatus::open
              : friction(site) && stick(site) ? ContactStatus::stick
@@ -157,22 +164,34 @@ namespace Nodus
     void begin_loop(bool merged = false);
     struct Update
     {
-      unsigned int              changes = 0;     ///< on all ranks
-      unsigned int              period  = 0;     ///< > 0: this status vector was visited that many passes ago
-      bool                      cycles  = false; ///< merged loop: visited again too often
-      unsigned int              frozen  = 0;     ///< sites that keep their status from here on, on all ranks
-      std::vector<unsigned int> sites;           ///< of this rank that changed
+      unsigned int              changes  = 0;     ///< on all ranks
+      unsigned int              period   = 0;     ///< > 0: this status vector was visited that many passes ago
+      bool                      cycles   = false; ///< merged loop: visited again too often
+      unsigned int              frozen   = 0;     ///< sites that keep their status from here on, on all ranks
+      bool                      to_means = false; ///< from here on laws hold in the mean where that is possible
+      std::vector<unsigned int> sites;            ///< of this rank that changed
     };
     /// Tests every site and changes those that contradict their status (eq. 2, 3, 7, 8); begin_loop() comes first. Once
     /// a status vector comes back, only the contradicting site of lowest order (ContactSurfaces) changes in a pass:
     /// Murty's least-index rule, which is finite for frictionless contact at frozen geometry where changing all at once
-    /// may cycle. Where one comes back even so (friction, statuses of integration points), no vector may satisfy all
-    /// sites: those that take part in the cycle, and in later ones, are frozen with the status that they contradict
-    /// least; the others change all at once again.
-    /// A merged loop has no such rules and cycles when vectors come back time and again. Collective.
+    /// may cycle. Where one comes back even so (friction), no vector may satisfy all sites: those that take part in the
+    /// cycle, and in later ones, are frozen with the status that they contradict least; the others change all at once
+    /// again. A merged loop has no such rules and cycles when vectors come back time and again.
+    /// Before all that, sites that share multipliers, whose conditions need not have a common solution, hold their laws
+    /// in the mean for the rest of the attempt: see hold_in_the_mean(). Collective.
     /// @p closing_only: sites that penetrate close, nothing else changes (an iterate whose pressures mean nothing yet).
     Update update(const StatusInput &input, bool closing_only = false);
 
+    /// Until begin_increment():
+    /// - Integration points have the pressure lambda - rho_n d_n where that is negative, and the friction direction
+    ///   Lambda + rho_tau slip projected on the unit ball. Frictionless, this is the saddle point of an augmented
+    ///   Lagrangian: it exists, and statuses that belong to it.
+    /// - Consistent weights with friction are lumped: a node rubs with the threshold of its own mean pressure, not with
+    ///   those of its neighbours, which would go on where it opens. Its mean pressure has the same equations as before.
+    void hold_in_the_mean()
+    {
+      in_the_mean_ = true;
+    }
     /// Largest violation of the sites that were frozen in this loop, relative to the pressure of the pair or to the
     /// cone, where it is, and how many have one. Collective.
     struct Violation
@@ -222,6 +241,9 @@ namespace Nodus
     {
       return pairs_[pair].initial_overclosure == ContactPairParameters::InitialOverclosure::interference;
     }
+    bool              can_project(unsigned int pair) const;
+    bool              can_lump(unsigned int pair) const;
+    bool              can_hold_in_the_mean() const;
     void              update_floor();
     void              note_friction();
     std::vector<char> code() const;
@@ -246,7 +268,8 @@ namespace Nodus
     std::vector<std::array<double, 3>>        seen_; ///< last violation while open, slip, stick since a cycle; -1: none
     std::vector<char>                         had_friction_; ///< at the last test: the iterate knows of friction there
     bool                                      one_at_a_time_ = false, freezes_ = false, merged_ = false;
-    unsigned int                              returns_ = 0; ///< to a visited vector, in this loop
+    bool                                      in_the_mean_ = false; ///< in this attempt at the increment
+    unsigned int                              returns_     = 0;     ///< to a visited vector, in this loop
   };
 } // namespace Nodus
 

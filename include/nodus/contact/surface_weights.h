@@ -29,12 +29,14 @@ namespace Nodus
   class SurfaceWeights
   {
   public:
-    /// @p x current and @p X reference positions of the surface nodes; each pair takes its own measure. Collective.
+    /// @p x current and @p X reference positions of the surface nodes; each pair takes its own measure. Consistent
+    /// weights of pairs that are @p lumped have one point a node like dual ones, with the same m_j. Collective.
     void compute(const std::vector<ContactPairParameters> &pairs,
                  const ContactSurfaces                    &surfaces,
                  const AveragedJump                       &averaged,
                  const std::vector<Point>                 &x,
-                 const std::vector<Point>                 &X);
+                 const std::vector<Point>                 &X,
+                 const std::vector<bool>                  &lumped = {});
 
     const std::vector<ContactPoint> &points() const
     {
