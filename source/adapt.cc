@@ -47,7 +47,7 @@ namespace Nodus
       return true;
     }
 
-    const std::vector<Vector>                                    state_before = nodal_state();
+    const std::vector<Vector>                                    state_before = nodal_state(true);
     std::vector<Vector>                                          ghosted(state_before.size());
     std::vector<const Vector *>                                  pointers;
     dealii::parallel::distributed::SolutionTransfer<dim, Vector> transfer(dof_handler);
@@ -75,7 +75,7 @@ namespace Nodus
     for (Vector &v : after)
       hanging_nodes.distribute(v);
     histories.finish(*solid);
-    set_nodal_state(after, interpolated_sites(after));
+    set_nodal_state(after, true, interpolated_sites(after));
     committed_area.clear(); // the pressures are taken over, not the forces
     committed_stiffness_scale = scale;
     roll_back();

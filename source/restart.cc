@@ -82,9 +82,9 @@ namespace Nodus
 
     constexpr unsigned int n_status = std::tuple_size<Status::Record>::value, n_site = n_status + dim;
 
-    /// State of a slave node: that of the site, lambda, Lambda as a vector in space, the area that they refer to and
-    /// the two tangents of the slip. It travels as vectors like the displacement, three numbers in each, zeros at the
-    /// end.
+    /// State of a slave node: that of the site, lambda, Lambda (two components, or a vector in space), the area that
+    /// they refer to and the two tangents of the slip. It travels as vectors like the displacement, three numbers in
+    /// each, zeros at the end.
     constexpr unsigned int n_node_vectors = (n_site + 5 + 2 * dim + dim - 1) / dim;
     /// Times that a mesh is refined at most on the way to that of a checkpoint.
     constexpr unsigned int largest_level_change = 30;
@@ -199,23 +199,27 @@ namespace Nodus
   }
 
   /// The committed state as vectors like the displacement, which is the first of them: what a checkpoint and a new mesh
-  /// take over. States of integration points are not among it.
-  std::vector<Vector> ContactProblem::Implementation::nodal_state() const
+  /// take over. States of integration points are not among it. @p in_space: friction multipliers are vectors in space,
+  /// to be interpolated; otherwise components, to be kept to the last digit.
+  std::vector<Vector> ContactProblem::Implementation::nodal_state(const bool in_space) const
   {
     std::vector<Vector> vectors = {committed.block(0), reaction, committed_applied};
     for (unsigned int n = 0; n < n_node_vectors; ++n)
       vectors.emplace_back(surfaces->layout().owned[0], communicator);
-    const std::vector<SiteState> sites = node_states();
+    const std::vector<SiteState> means = in_space ? node_states() : std::vector<SiteState>();
     for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
     {
-      NodeState        state{};
-      const SiteState &site       = sites[k];
-      const DoFIndex   multiplier = surfaces->multiplier(k);
-      double          *value      = std::copy(site.begin(), site.end(), state.begin());
-      *value++                    = committed.block(1)(multiplier);
+      NodeState       state{};
+      const SiteState site       = in_space ? means[k] : site_state(status->kept(k), committed_site_force[k]);
+      const DoFIndex  multiplier = surfaces->multiplier(k);
+      double         *value      = std::copy(site.begin(), site.end(), state.begin());
+      *value++                   = committed.block(1)(multiplier);
       Vector3 Lambda;
       for (unsigned int i = 0; i < 2; ++i)
-        Lambda += committed.block(2)(2 * multiplier + i) * committed_pairing[k].tangent[i];
+        if (const double component = committed.block(2)(2 * multiplier + i); in_space)
+          Lambda += component * committed_pairing[k].tangent[i];
+        else
+          Lambda[i] = component;
       value    = std::copy(Lambda.begin_raw(), Lambda.end_raw(), value);
       *value++ = committed_area.empty() ? 0. : committed_area[k];
       for (const Vector3 &tangent : committed_pairing[k].tangent)
@@ -229,7 +233,9 @@ namespace Nodus
   }
 
   /// Takes back what nodal_state() gave, and the states of integration points among @p sites (number of all sites).
-  void ContactProblem::Implementation::set_nodal_state(const std::vector<Vector> &vectors, std::vector<SiteState> sites)
+  void ContactProblem::Implementation::set_nodal_state(const std::vector<Vector> &vectors,
+                                                       const bool                 in_space,
+                                                       std::vector<SiteState>     sites)
   {
     committed.block(0) = vectors[0];
     reaction           = vectors[1];
@@ -241,7 +247,10 @@ namespace Nodus
       NodeState state;
       for (unsigned int i = 0; i < state.size(); ++i)
         state[i] = vectors[n_displacement_vectors + i / dim](surfaces->nodes()[k].dofs[i % dim]);
-      std::copy_n(state.begin(), n_site, sites[k].begin());
+      if (!in_space || surfaces->has_status(k))
+        std::copy_n(state.begin(), n_site, sites[k].begin());
+      else
+        sites[k] = SiteState{}; // the points have taken it over
       const double  *value           = state.data() + n_site;
       const DoFIndex multiplier      = surfaces->multiplier(k);
       committed.block(1)(multiplier) = *value++;
@@ -252,9 +261,14 @@ namespace Nodus
       for (Vector3 &tangent : tangents[k])
         for (unsigned int c = 0; c < dim; ++c)
           tangent[c] = *value++;
-      // on a new mesh they lie between those of other nodes
       for (unsigned int i = 0; i < 2; ++i)
       {
+        if (!in_space)
+        {
+          committed.block(2)(2 * multiplier + i) = Lambda[i];
+          continue;
+        }
+        // on a new mesh the tangents lie between those of other nodes
         if (i == 1)
           tangents[k][1] -= (tangents[k][1] * tangents[k][0]) * tangents[k][0];
         if (const double norm = tangents[k][i].norm(); norm > 0.)
@@ -285,7 +299,7 @@ namespace Nodus
     if (vtu)
       common.series = vtu->series();
 
-    const std::vector<Vector> owned = nodal_state();
+    const std::vector<Vector> owned = nodal_state(false);
     std::vector<Vector>       relevant_vectors(owned.size());
     for (unsigned int n = 0; n < owned.size(); ++n)
     {
@@ -447,7 +461,7 @@ namespace Nodus
 
     for (Vector &v : vectors)
       v.compress(dealii::VectorOperation::insert);
-    set_nodal_state(vectors, std::move(sites));
+    set_nodal_state(vectors, false, std::move(sites));
   }
 
   /// Once per Newton iteration: writes a checkpoint of what converged last where a signal asks for it. @throws

@@ -115,7 +115,7 @@ namespace Nodus
     void                     restore_equilibrium();
     std::vector<SiteState>   node_states() const;
     std::vector<SiteState>   interpolated_sites(const std::vector<Vector> &vectors) const;
-    std::vector<Vector>      nodal_state() const;
+    std::vector<Vector>      nodal_state(bool in_space) const;
     void                     write_checkpoint();
     void                     read_checkpoint();
     void                     match_mesh(const std::vector<std::filesystem::path> &pieces);
@@ -125,7 +125,7 @@ namespace Nodus
     void                     update_results();
     void                     summary();
     std::string              report_profile(bool converged);
-    void                     set_nodal_state(const std::vector<Vector> &vectors, std::vector<SiteState> sites);
+    void set_nodal_state(const std::vector<Vector> &vectors, bool in_space, std::vector<SiteState> sites);
 
     std::vector<double> pair_stiffness() const;
 

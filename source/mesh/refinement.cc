@@ -2,6 +2,7 @@
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/distributed/grid_refinement.h>
+#include <deal.II/grid/grid_tools.h>
 #include <deal.II/lac/vector.h>
 
 #include <algorithm>
@@ -29,6 +30,53 @@ namespace Nodus
         if (cell->is_locally_owned())
           sum += values[cell->active_cell_index()];
       return dealii::Utilities::MPI::sum(sum, triangulation.get_communicator());
+    }
+  } // namespace
+
+  namespace
+  {
+    /// Takes back coarsening that cannot be: of a part of the eight, or beside cells that would be two levels finer. On
+    /// the parts of the ranks deal.II would find less of it than on the whole mesh; here all see the same.
+    void keep_possible_coarsening(Bodies::Triangulation &triangulation)
+    {
+      enum Flag : char
+      {
+        none,
+        coarsen,
+        refine
+      };
+      std::vector<char> flag(triangulation.n_active_cells(), none);
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          flag[cell->active_cell_index()] = cell->refine_flag_set()    ? refine
+                                            : cell->coarsen_flag_set() ? coarsen
+                                                                       : none;
+      dealii::GridTools::exchange_cell_data_to_ghosts<char>(
+          triangulation,
+          [&](const auto &cell) { return flag[cell->active_cell_index()]; },
+          [&](const auto &cell, const char value) { flag[cell->active_cell_index()] = value; });
+
+      std::vector<int> level_at(triangulation.n_vertices(), 0); ///< the finest there will be without coarsening
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (!cell->is_artificial())
+          for (const unsigned int v : cell->vertex_indices())
+            level_at[cell->vertex_index(v)] = std::max(
+                level_at[cell->vertex_index(v)], cell->level() + (flag[cell->active_cell_index()] == refine ? 1 : 0));
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned() && cell->coarsen_flag_set())
+        {
+          bool       possible = cell->level() > 0;
+          const auto parent   = possible ? cell->parent() : Bodies::Triangulation::cell_iterator(cell);
+          for (unsigned int c = 0; possible && c < parent->n_children(); ++c)
+          {
+            const auto child = parent->child(c);
+            possible = child->is_active() && !child->is_artificial() && flag[child->active_cell_index()] == coarsen;
+            for (unsigned int v = 0; possible && v < dealii::GeometryInfo<dim>::vertices_per_cell; ++v)
+              possible = level_at[child->vertex_index(v)] <= cell->level();
+          }
+          if (!possible)
+            cell->clear_coarsen_flag();
+        }
     }
   } // namespace
 
@@ -99,6 +147,7 @@ namespace Nodus
         GridRefinement::refine_and_coarsen_fixed_number(triangulation, error, most / n_cells, 0.);
     }
 
+    keep_possible_coarsening(triangulation);
     triangulation.prepare_coarsening_and_refinement();
     unsigned int changes = 0;
     for (const auto &cell : triangulation.active_cell_iterators())
