@@ -201,18 +201,18 @@ namespace Nodus
       all_psi.resize(m * points.size());
       for (unsigned int q = 0; q < points.size(); ++q)
       {
-        const MortarPoint             &point = points[q];
-        const FaceShape                shape(degree, point.xi, point.eta);
-        const Column                   phi     = of_slaves(shape.value);
-        const Column                   hat     = of_slaves(hats(degree, point.xi, point.eta));
-        const Column                   psi     = weight[q] * (dual * phi + (1. - part) * hat);
-        const Partner                  partner = rigid == nullptr ? meshed_partner(pair, master, point.master)
-                                                                  : rigid_partner(*rigid, slave.at(f, point.xi, point.eta).x);
-        const Vector3                  offset  = slave.offset(f, point.xi, point.eta) - partner.offset;
-        const Vector3                  normal  = pair.normal == ContactPairParameters::Normal::slave
-                                                     ? slave.averaged_normal(f, point.xi, point.eta)
-                                                     : partner.normal;
-        unsigned int                   column[9];
+        const MortarPoint &point = points[q];
+        const FaceShape    shape(degree, point.xi, point.eta);
+        const Column       phi     = of_slaves(shape.value);
+        const Column       hat     = of_slaves(hats(degree, point.xi, point.eta));
+        const Column       psi     = weight[q] * (dual * phi + (1. - part) * hat);
+        const Partner      partner = rigid == nullptr ? meshed_partner(pair, master, point.master)
+                                                      : rigid_partner(*rigid, slave.at(f, point.xi, point.eta).x);
+        const Vector3      offset  = slave.offset(f, point.xi, point.eta) - partner.offset;
+        const Vector3      normal  = pair.normal == ContactPairParameters::Normal::slave
+                                         ? slave.averaged_normal(f, point.xi, point.eta)
+                                         : partner.normal;
+        unsigned int       column[9];
         for (unsigned int b = 0; b < partner.n; ++b)
           column[b] = std::find(nodes.begin() + n, nodes.end(), partner.nodes[b]) - nodes.begin();
         for (unsigned int a = 0; a < m; ++a)

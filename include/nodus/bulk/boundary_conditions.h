@@ -113,7 +113,7 @@ namespace Nodus
     std::vector<std::unique_ptr<dealii::Function<dim>>> functions_;
     std::vector<Prescribed>                             prescribed_; ///< locally relevant
     HangingNodes                                        hanging_;
-    dealii::AffineConstraints<double>                   lines_;      ///< not closed: hanging nodes unresolved
+    dealii::AffineConstraints<double>                   lines_; ///< not closed: hanging nodes unresolved
     dealii::AffineConstraints<double>                   homogeneous_, increment_;
     std::vector<Load>                                   loads_;
     std::vector<ReactionRegion>                         reaction_regions_;
