@@ -302,7 +302,8 @@ namespace Nodus
     committed_pairing         = pairing;
     committed_area            = weights.area();
     committed_stiffness_scale = stiffness_scale;
-    if (path.ends_interval() && time > path.time())
+    const bool on_new_mesh    = time == path.time();
+    if (on_new_mesh ? time == path.interval_begin() : path.ends_interval())
     {
       const auto &constraints = boundary_conditions->homogeneous_constraints();
       for (const DoFIndex i : surfaces->layout().owned[0])

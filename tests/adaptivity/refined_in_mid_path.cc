@@ -41,6 +41,21 @@ namespace
     return p;
   }
 
+  /// Pressed by a displacement that is held through a second interval, in which the mesh goes on changing.
+  Parameters held_block()
+  {
+    Parameters p                  = dragged_block(ContactPairParameters::Scheme::averaged, "mid_path_results");
+    p.boundary_conditions         = {hold("ground", region(1, {z_minus}), {0, 1, 2}),
+                                     drive("press", region(2, {z_plus}), 2, "-0.01*min(1, t)"),
+                                     hold("guide", region(2, {z_plus}), {0, 1})};
+    p.load_stepping.interval_ends = {1, 2};
+    p.load_stepping.increments    = {2, 20};
+    p.adaptivity.refine_fraction  = 0.3;
+    p.adaptivity.coarsen_fraction = 0.2;
+    p.output.checkpoint_interval  = 0;
+    return p;
+  }
+
   struct Run
   {
     std::vector<Vector3>      force;
@@ -104,4 +119,12 @@ int main(int argc, char **argv)
     check("  restart: friction at the end", again.force.back()[0], run.force.back()[0], 1e-8);
     check("  restart: the same mesh", again.slave_nodes.back() == run.slave_nodes.back());
   }
+
+  const Run run = follow(held_block());
+  if (std::getenv("NODUS_TEST_LOG") != nullptr && root())
+    for (unsigned int i = 0; i < run.force.size(); ++i)
+      std::cout << run.slave_nodes[i] << " sites, force " << run.force[i] << std::endl;
+  // it comes back to the same two meshes again and again
+  check("held while cells are split and joined: the same mesh", run.slave_nodes[12] == run.slave_nodes[20]);
+  check("held while cells are split and joined: pressing force", run.force[20][2], run.force[12][2], 1e-4);
 }
