@@ -347,10 +347,12 @@ namespace Nodus
                         adaptivity.repetitions,
                         "Times that an increment is repeated on the refined mesh, until no cell is to be refined [-].",
                         count);
-      prm.add_parameter("Bulk weight",
-                        adaptivity.bulk_weight,
-                        "Weight of the jumps of the stress between cells in the indicator of the error [-].",
-                        not_negative);
+      prm.add_parameter(
+          "Bulk weight",
+          adaptivity.bulk_weight,
+          "Weight, in the indicator of the error, of the difference between the stress and the one recovered at the "
+          "nodes [-].",
+          not_negative);
       prm.add_parameter("Contact weight",
                         adaptivity.contact_weight,
                         "Weight of the contact terms in it: the jump between the contact traction and the stress below "

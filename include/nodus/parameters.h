@@ -304,7 +304,7 @@ namespace Nodus
     unsigned int initial_cycles         = 0;  ///< before the first increment, near expected contact
     double       contact_distance       = 0.; ///< gaps up to here are expected to close [length]; 0: a slave face
     unsigned int repetitions            = 0;  ///< of an increment, until nothing is to be refined
-    double       bulk_weight            = 1.; ///< of the jumps of stress between cells
+    double       bulk_weight            = 1.; ///< of the stress against the recovered one
     double       contact_weight         = 1.; ///< of the contact indicator
     Marking      marking                = Marking::fixed_fraction;
     double       refine_fraction        = 0.3; ///< of the squared error in the cells to be refined (fixed fraction)
