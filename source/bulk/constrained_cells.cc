@@ -4,7 +4,7 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <algorithm>
-#include <functional>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -14,23 +14,20 @@ namespace Nodus
   {
     constexpr int tag = 4712;
 
-    /// Adds the upper blocks of a group of nodes where they are stored.
-    void scatter(const std::vector<NodeMatrix::Position>                             &positions,
-                 const unsigned int                                                   n,
-                 const std::function<const double *(unsigned int A, unsigned int B)> &block,
-                 NodeMatrix                                                          &tangent)
+    /// Adds the upper blocks of a group where they are stored.
+    void scatter(const std::vector<NodeMatrix::Position> &positions, const double *K, NodeMatrix &tangent)
     {
-      auto position = positions.begin();
-      for (unsigned int A = 0; A < n; ++A)
-        for (unsigned int B = A; B < n; ++B, ++position)
-          if (position->stored())
-          {
-            const double *const K  = block(A, B);
-            double *const       to = tangent.block(position->block());
-            for (unsigned int i = 0; i < dim; ++i)
-              for (unsigned int k = 0; k < dim; ++k)
-                to[position->transposed() ? dim * k + i : dim * i + k] += K[dim * i + k];
-          }
+      for (const NodeMatrix::Position position : positions)
+      {
+        if (position.stored())
+        {
+          double *const to = tangent.block(position.block());
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int k = 0; k < dim; ++k)
+              to[position.transposed() ? dim * k + i : dim * i + k] += K[dim * i + k];
+        }
+        K += dim * dim;
+      }
     }
   } // namespace
 
@@ -192,23 +189,68 @@ namespace Nodus
     return 3 * dim * n + (with_tangent ? dim * dim * n * (n + 1) / 2 : 0);
   }
 
-  void ConstrainedCells::clear(const unsigned int n_free, const bool with_tangent)
+  /// Only the upper half is kept: a pair of nodes brings its block and the transposed one, of which one is above the
+  /// diagonal, or both are on it.
+  void ConstrainedCells::condense(const Cell &cell, const double *K)
   {
-    n_free_ = n_free;
-    if (with_tangent)
-      block_.assign(dim * dim * n_free * n_free, 0.);
-    for (auto &force : force_)
-      force.assign(dim * n_free, 0.);
+    const auto add = [&](const std::size_t block, const double weight, const bool transposed)
+    {
+      double *const to = blocks_.data() + block;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int k = 0; k < dim; ++k)
+          to[dim * i + k] += weight * (transposed ? K[dim * k + i] : K[dim * i + k]);
+    };
+    blocks_.assign(dim * dim * n_free_ * (n_free_ + 1) / 2, 0.);
+    for (unsigned int a = 0; a < cell.n_nodes(); ++a)
+      for (unsigned int b = a; b < cell.n_nodes(); ++b, K += dim * dim)
+        for (const Share *A = cell.begin(a); A != cell.end(a); ++A)
+          for (const Share *B = cell.begin(b); B != cell.end(b); ++B)
+          {
+            const double weight = A->weight * B->weight;
+            if (A->node <= B->node)
+              add(block(A->node, B->node), weight, false);
+            if (A->node >= B->node && a != b)
+              add(block(B->node, A->node), weight, true);
+          }
   }
 
-  void ConstrainedCells::finish(const Cell                &cell,
-                                const std::vector<double> &internal,
-                                const std::vector<double> &external,
-                                const std::vector<char>   &is_prescribed,
-                                const std::vector<double> &prescribed,
-                                NodeMatrix                *tangent,
-                                const NodalForces         &sums)
+  void ConstrainedCells::eliminate_prescribed(const Cell                &cell,
+                                              const std::vector<char>   &is_prescribed,
+                                              const std::vector<double> &prescribed)
   {
+    for (unsigned int A = 0; A < n_free_; ++A)
+      for (unsigned int i = 0; i < dim; ++i)
+      {
+        const unsigned int dof = dim * cell.free[A] + i;
+        if (!is_prescribed[dof])
+          continue;
+        const double diagonal = std::abs(entry(A, i, A, i));
+        for (unsigned int B = 0; B < n_free_; ++B)
+          for (unsigned int k = 0; k < dim; ++k)
+          {
+            double &K = entry(B, k, A, i);
+            force_[2][dim * B + k] -= K * prescribed[dof];
+            K = 0.;
+            if (A == B) // stored in full
+              entry(A, i, A, k) = 0.;
+          }
+        entry(A, i, A, i) = diagonal;
+      }
+  }
+
+  void ConstrainedCells::add(const unsigned int         index,
+                             const std::vector<double> &internal,
+                             const std::vector<double> &external,
+                             const std::vector<char>   &is_prescribed,
+                             const std::vector<double> &prescribed,
+                             const std::vector<double> &stiffness,
+                             NodeMatrix                *tangent,
+                             const NodalForces         &sums)
+  {
+    const Cell &cell = cells_[index];
+    n_free_          = cell.free.size();
+    for (auto &force : force_)
+      force.assign(dim * n_free_, 0.);
     for (unsigned int a = 0; a < cell.n_nodes(); ++a)
       for (const Share *A = cell.begin(a); A != cell.end(a); ++A)
         for (unsigned int i = 0; i < dim; ++i)
@@ -216,39 +258,31 @@ namespace Nodus
           force_[0][dim * A->node + i] += A->weight * internal[dim * a + i];
           force_[1][dim * A->node + i] += A->weight * external[dim * a + i];
         }
-    const unsigned int n = n_free_;
-    for (unsigned int A = 0; A < n && tangent; ++A)
-      for (unsigned int i = 0; i < dim; ++i)
-      {
-        const unsigned int dof = dim * cell.free[A] + i;
-        if (!is_prescribed[dof])
-          continue;
-        const double diagonal = std::abs(entry(A, i, A, i));
-        for (unsigned int B = 0; B < n; ++B)
-          for (unsigned int k = 0; k < dim; ++k)
-          {
-            force_[2][dim * B + k] -= entry(B, k, A, i) * prescribed[dof];
-            entry(B, k, A, i) = entry(A, i, B, k) = 0.;
-          }
-        entry(A, i, A, i) = diagonal;
-      }
-
+    if (tangent)
+    {
+      condense(cell, stiffness.data());
+      eliminate_prescribed(cell, is_prescribed, prescribed);
+      scatter(cell.positions, blocks_.data(), *tangent);
+      for (const auto &[a, node] : cell.hanging) // a positive diagonal
+        for (unsigned int i = 0; i < dim; ++i)
+        {
+          const unsigned int pair = a * cell.n_nodes() - a * (a + 1) / 2 + a;
+          tangent->add_to_diagonal(dim * node + i, std::abs(stiffness[(pair * dim + i) * dim + i]));
+        }
+    }
     std::vector<double> *const to[3] = {&sums.internal, &sums.external, &sums.rhs};
     for (unsigned int part = 0; part < 3; ++part)
-      for (unsigned int A = 0; A < n; ++A)
+      for (unsigned int A = 0; A < n_free_; ++A)
         for (unsigned int i = 0; i < dim; ++i)
           (*to[part])[dim * cell.free[A] + i] += force_[part][dim * A + i];
-    if (tangent)
-      scatter(
-          cell.positions, n, [&](const unsigned int A, const unsigned int B) { return &entry(A, 0, B, 0); }, *tangent);
     for (const unsigned int d : cell.destinations)
     {
       std::vector<double> &outgoing = neighbours_[d].outgoing;
       outgoing.reserve(neighbours_[d].n_outgoing);
       for (const auto &force : force_)
         outgoing.insert(outgoing.end(), force.begin(), force.end());
-      for (unsigned int A = 0; A < n && tangent; ++A)
-        outgoing.insert(outgoing.end(), &entry(A, 0, A, 0), &entry(A, 0, A, 0) + dim * dim * (n - A));
+      if (tangent)
+        outgoing.insert(outgoing.end(), blocks_.begin(), blocks_.end());
     }
   }
 
@@ -301,12 +335,7 @@ namespace Nodus
               (*sum)[dim * cell.free[A] + i] += numbers[i];
         if (!tangent)
           continue;
-        scatter(
-            cell.positions,
-            n,
-            [&](const unsigned int A, const unsigned int B)
-            { return numbers + dim * dim * (A * n - A * (A - 1) / 2 + B - A); },
-            *tangent);
+        scatter(cell.positions, numbers, *tangent);
         numbers += dim * dim * n * (n + 1) / 2;
       }
       neighbour.outgoing.clear();

@@ -243,13 +243,18 @@ namespace Nodus
       cell_forces[0][i] = batch_force[i][lane];
     if (loads.act_on(cell))
       std::copy(cell_external.begin(), cell_external.end(), cell_forces[1].begin());
+    if (tangent)
+    {
+      cell_stiffness.resize(batch_stiffness.size());
+      for (std::size_t k = 0; k < batch_stiffness.size(); ++k)
+        cell_stiffness[k] = batch_stiffness[k][lane];
+    }
     constrained.add(constrained.index(cell),
                     cell_forces[0],
                     cell_forces[1],
                     is_prescribed,
                     prescribed,
-                    [&](const unsigned int a, const unsigned int i, const unsigned int b, const unsigned int k)
-                    { return entry(a, i, b, k, lane); },
+                    cell_stiffness,
                     tangent,
                     {nodal_internal, nodal_external, nodal_rhs});
   }

@@ -33,10 +33,10 @@ def adaptive(degree, cycles, level):
 
 
 def cases():
-    for degree, levels in ((1, (2, 3, 4)), (2, (1, 2, 3))):
+    for degree, levels in ((1, (2, 3, 4, 5)), (2, (1, 2, 3, 4))):
         for level in levels:
             yield f"Q{degree} uniform {level}", uniform(degree, level)
-    for degree, pairs in ((1, ((2, 3), (3, 4), (4, 5))), (2, ((2, 2), (3, 3), (3, 4)))):
+    for degree, pairs in ((1, ((2, 3), (3, 4), (4, 5), (5, 6))), (2, ((2, 2), (3, 3), (3, 4), (4, 5)))):
         for cycles, level in pairs:
             yield f"Q{degree} adaptive {level}", adaptive(degree, cycles, level)
 

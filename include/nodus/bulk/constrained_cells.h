@@ -7,7 +7,6 @@
 
 #include <deal.II/dofs/dof_handler.h>
 
-#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -56,37 +55,16 @@ namespace Nodus
     {
       std::vector<double> &internal, &external, &rhs;
     };
-    /// Adds what cell @p index has: forces at its nodes, and with @p tangent its stiffness as stiffness(a, i, b, k).
+    /// Adds what cell @p index has: forces at its nodes, and with @p tangent its stiffness, blocks [a][b >= a][i][k].
     /// Prescribed components are eliminated (@p is_prescribed and the values that are left, at the nodes of the base).
-    template <typename Stiffness>
-    void add(const unsigned int         index,
+    void add(unsigned int               index,
              const std::vector<double> &internal,
              const std::vector<double> &external,
              const std::vector<char>   &is_prescribed,
              const std::vector<double> &prescribed,
-             const Stiffness           &stiffness,
+             const std::vector<double> &stiffness,
              NodeMatrix                *tangent,
-             const NodalForces         &sums)
-    {
-      const Cell &cell = cells_[index];
-      clear(cell.free.size(), tangent);
-      if (tangent)
-        for (unsigned int a = 0; a < cell.n_nodes(); ++a)
-          for (unsigned int b = 0; b < cell.n_nodes(); ++b)
-            for (const Share *A = cell.begin(a); A != cell.end(a); ++A)
-              for (const Share *B = cell.begin(b); B != cell.end(b); ++B)
-              {
-                const double weight = A->weight * B->weight;
-                for (unsigned int i = 0; i < dim; ++i)
-                  for (unsigned int k = 0; k < dim; ++k)
-                    entry(A->node, i, B->node, k) += weight * stiffness(a, i, b, k);
-              }
-      finish(cell, internal, external, is_prescribed, prescribed, tangent, sums);
-      if (tangent)
-        for (const auto &[a, node] : cell.hanging) // a positive diagonal
-          for (unsigned int i = 0; i < dim; ++i)
-            tangent->add_to_diagonal(dim * node + i, std::abs(stiffness(a, i, a, i)));
-    }
+             const NodalForces         &sums);
     /// After the last add() of a sweep: brings in what other ranks' cells have, unless the sweep @p failed somewhere.
     /// Collective.
     void exchange(bool failed, NodeMatrix *tangent, const NodalForces &sums);
@@ -129,18 +107,19 @@ namespace Nodus
       std::size_t         n_outgoing = 0; ///< blocks and nodes of own cells that go there: numbers with tangent
     };
 
+    /// The first entry of the block of free nodes A and B >= A in #blocks_.
+    std::size_t block(const unsigned int A, const unsigned int B) const
+    {
+      return std::size_t(dim * dim) * (A * n_free_ - A * (A + 1) / 2 + B);
+    }
     double &entry(const unsigned int A, const unsigned int i, const unsigned int B, const unsigned int k)
     {
-      return block_[((A * n_free_ + B) * dim + i) * dim + k];
+      return A <= B ? blocks_[block(A, B) + dim * i + k] : blocks_[block(B, A) + dim * k + i];
     }
-    void               clear(unsigned int n_free, bool with_tangent);
-    void               finish(const Cell                &cell,
-                              const std::vector<double> &internal,
-                              const std::vector<double> &external,
-                              const std::vector<char>   &is_prescribed,
-                              const std::vector<double> &prescribed,
-                              NodeMatrix                *tangent,
-                              const NodalForces         &sums);
+    void               condense(const Cell &cell, const double *stiffness);
+    void               eliminate_prescribed(const Cell                &cell,
+                                            const std::vector<char>   &is_prescribed,
+                                            const std::vector<double> &prescribed);
     static std::size_t n_numbers(const Cell &cell, bool with_tangent);
 
     MPI_Comm                  communicator_;
@@ -152,7 +131,8 @@ namespace Nodus
     unsigned int              n_owned_ = 0;
     // of the cell at hand
     unsigned int        n_free_ = 0;
-    std::vector<double> block_, force_[3]; ///< force_: internal, external, right-hand side
+    std::vector<double> blocks_;   ///< stiffness: [A][B >= A][i][k]
+    std::vector<double> force_[3]; ///< internal, external, right-hand side
   };
 } // namespace Nodus
 

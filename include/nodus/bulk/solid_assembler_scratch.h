@@ -110,7 +110,7 @@ namespace Nodus
     std::vector<double> last_values; ///< displacement, time and prescribed displacements of the last sweep
     NodeMatrix         *last_tangent = nullptr;
     // of a cell with loads, or with hanging nodes
-    std::vector<double>        cell_u, cell_forces[2];
+    std::vector<double>        cell_u, cell_forces[2], cell_stiffness;
     dealii::Vector<double>     cell_internal, cell_external;
     dealii::FullMatrix<double> cell_tangent;
   };
