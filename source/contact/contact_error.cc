@@ -25,6 +25,8 @@ namespace Nodus
       }
       void add(const unsigned int pair, const Projection &master, const double value)
       {
+        if (!master.found())
+          return;
         const SurfaceFace &face = surfaces_.master_faces(pair)[master.face];
         outgoing_[face.owner].emplace_back(std::make_pair(pair, face.number), value);
       }
@@ -51,15 +53,31 @@ namespace Nodus
       std::map<unsigned int, std::vector<Mark>> outgoing_;
     };
 
-    Projection opposite(const ContactGeometry &geometry,
-                        const unsigned int     pair,
-                        const unsigned int     face,
-                        const double           xi,
-                        const double           eta)
+    /// The point of the master that faces a point of a slave face; on a rigid surface it has no face.
+    struct Opposite
     {
-      const SurfaceGeometry &slave = geometry.slave[pair];
-      return geometry.search[pair].closest(
-          slave.at(face, xi, eta).x, slave.normal(face, xi, eta), geometry.reach[pair], tolerated_overhang);
+      bool       found;
+      Projection master;
+      Vector3    gap; ///< from the slave to it
+    };
+    Opposite opposite(const ContactGeometry &geometry,
+                      const unsigned int     pair,
+                      const unsigned int     face,
+                      const double           xi,
+                      const double           eta)
+    {
+      const SurfaceGeometry &slave  = geometry.slave[pair];
+      const Point            x      = slave.at(face, xi, eta).x;
+      const Vector3          normal = slave.normal(face, xi, eta);
+      if (geometry.rigid[pair] != nullptr)
+      {
+        const RigidPoint point = geometry.closest_on_rigid(pair, x, normal);
+        return {point.found, Projection(), point.x - x};
+      }
+      const Projection master = geometry.search[pair].closest(x, normal, geometry.reach[pair], tolerated_overhang);
+      if (!master.found())
+        return {false, master, Vector3()};
+      return {true, master, geometry.master[pair].at(master.face, master.xi, master.eta).x - x};
     }
 
     template <typename Function>
@@ -82,50 +100,47 @@ namespace Nodus
                          RefinementIndicator              &indicator)
   {
     MasterMarks masters(surfaces);
-    for_own_faces(
-        surfaces,
-        [&](const unsigned int p, const unsigned int f, const unsigned int own)
-        {
-          const SurfaceFace   &face   = surfaces.slave_faces(p)[f];
-          const ContactFields &field  = fields[p];
-          const auto          &places = field.faces[own];
-          const double         E = stiffness[p], A = geometry.slave[p].at(f, 0.5, 0.5).area_vector().norm();
-          const double         h    = std::sqrt(A);
-          double               jump = 0., traction = 0., friction = 0.;
-          bool                 open = false, closed = false, stick = false, slip = false;
-          for (unsigned int n = 0; n < places.size(); ++n)
-          {
-            const unsigned int i    = places[n];
-            const Vector3      t    = field.friction[i] - field.pressure[i] * field.normal[i];
-            const Vector3      bulk = stress.stress(surfaces.nodes()[face.nodes[n]].dofs[0]) * field.normal[i];
-            if (field.paired[i])
-              jump += (t - bulk).norm_square() / places.size();
-            traction = std::max(traction, t.norm_square());
-            friction = std::max(friction, field.friction[i].norm_square());
-            open     = open || field.status[i] == ContactStatus::open;
-            closed   = closed || field.status[i] != ContactStatus::open;
-            stick    = stick || field.status[i] == ContactStatus::stick;
-            slip     = slip || field.status[i] == ContactStatus::slip;
-          }
-          const Projection master = opposite(geometry, p, f, 0.5, 0.5);
-          double           sum    = closed ? jump : 0.;
-          if (open && closed)
-            sum += traction;
-          if (stick && slip)
-            sum += 0.25 * friction;
-          if (master.found() && closed)
-          {
-            const Vector3 n = geometry.slave[p].normal(f, 0.5, 0.5);
-            const double  gap =
-                (geometry.master[p].at(master.face, master.xi, master.eta).x - geometry.slave[p].at(f, 0.5, 0.5).x) * n;
-            if (!open || gap < 0.)
-              sum += E * E * gap * gap / A;
-          }
-          const double value = weight * h * A / E * sum;
-          indicator.squared_error[face.cell] += value;
-          if (master.found() && value > 0.)
-            masters.add(p, master, value);
-        });
+    for_own_faces(surfaces,
+                  [&](const unsigned int p, const unsigned int f, const unsigned int own)
+                  {
+                    const SurfaceFace   &face   = surfaces.slave_faces(p)[f];
+                    const ContactFields &field  = fields[p];
+                    const auto          &places = field.faces[own];
+                    const double         E = stiffness[p], A = geometry.slave[p].at(f, 0.5, 0.5).area_vector().norm();
+                    const double         h    = std::sqrt(A);
+                    double               jump = 0., traction = 0., friction = 0.;
+                    bool                 open = false, closed = false, stick = false, slip = false;
+                    for (unsigned int n = 0; n < places.size(); ++n)
+                    {
+                      const unsigned int i = places[n];
+                      const Vector3      t = field.friction[i] - field.pressure[i] * field.normal[i];
+                      const Vector3 bulk   = stress.stress(surfaces.nodes()[face.nodes[n]].dofs[0]) * field.normal[i];
+                      if (field.paired[i])
+                        jump += (t - bulk).norm_square() / places.size();
+                      traction = std::max(traction, t.norm_square());
+                      friction = std::max(friction, field.friction[i].norm_square());
+                      open     = open || field.status[i] == ContactStatus::open;
+                      closed   = closed || field.status[i] != ContactStatus::open;
+                      stick    = stick || field.status[i] == ContactStatus::stick;
+                      slip     = slip || field.status[i] == ContactStatus::slip;
+                    }
+                    const Opposite middle = opposite(geometry, p, f, 0.5, 0.5);
+                    double         sum    = closed ? jump : 0.;
+                    if (open && closed)
+                      sum += traction;
+                    if (stick && slip)
+                      sum += 0.25 * friction;
+                    if (middle.found && closed)
+                    {
+                      const double gap = middle.gap * geometry.slave[p].normal(f, 0.5, 0.5);
+                      if (!open || gap < 0.)
+                        sum += E * E * gap * gap / A;
+                    }
+                    const double value = weight * h * A / E * sum;
+                    indicator.squared_error[face.cell] += value;
+                    if (value > 0.)
+                      masters.add(p, middle.master, value);
+                  });
     masters.deliver([&](const unsigned int cell, const double value) { indicator.squared_error[cell] += value; });
   }
 
@@ -135,7 +150,7 @@ namespace Nodus
     for_own_faces(surfaces,
                   [&](const unsigned int p, const unsigned int f, unsigned int)
                   {
-                    const Projection master = opposite(geometry, p, f, 0.5, 0.5);
+                    const Projection master = opposite(geometry, p, f, 0.5, 0.5).master;
                     if (!master.found())
                       return;
                     const auto size = [](const SurfaceGeometry &side, const unsigned int face)
@@ -157,14 +172,12 @@ namespace Nodus
                     const double limit = distance[p] > 0. ? distance[p] : surfaces.face_size(p);
                     for (unsigned int i = 0; i < 9; ++i)
                     {
-                      const double     xi = 0.5 * (i % 3), eta = 0.5 * (i / 3);
-                      const Projection master = opposite(geometry, p, f, xi, eta);
-                      if (!master.found() || geometry.master[p]
-                                                     .at(master.face, master.xi, master.eta)
-                                                     .x.distance(geometry.slave[p].at(f, xi, eta).x) > limit)
+                      const double   xi = 0.5 * (i % 3), eta = 0.5 * (i / 3);
+                      const Opposite point = opposite(geometry, p, f, xi, eta);
+                      if (!point.found || point.gap.norm() > limit)
                         continue;
                       indicator.refine[surfaces.slave_faces(p)[f].cell] = 1;
-                      masters.add(p, master, 1.);
+                      masters.add(p, point.master, 1.);
                     }
                   });
     masters.deliver([&](const unsigned int cell, double) { indicator.refine[cell] = 1; });

@@ -143,7 +143,7 @@ namespace Nodus
   {
     nodes.clear();
     slaves.clear();
-    edges.clear();
+    offsets.clear();
     force.assign(force.size(), Matrix3());
     gap.clear();
   }
@@ -219,50 +219,47 @@ namespace Nodus
                                    Blocks               &blocks) const
   {
     const unsigned int pair = surfaces_.pair(point.sites[0].first);
-    // what the offset of a hanging node adds is left out
-    const SurfaceGeometry &surface = (side == 0 ? geometry_.slave : geometry_.master)[pair];
-    if (!surface.smoothed() || !surface.face(face).hanging.empty())
+    if (!(side == 0 ? geometry_.slave : geometry_.master)[pair].smoothed())
       return;
-    std::array<double, 4> value;
-    for (unsigned int edge = 0; edge < 4; ++edge)
-      value[edge] = (side == 0 ? 1. : -1.) * SurfaceGeometry::edge_function(edge, xi, eta);
+    const double                sign  = side == 0 ? 1. : -1.;
+    const std::array<double, 8> value = SurfaceGeometry::offset_functions(xi, eta);
     for (const auto &[site, weight] : point.sites)
       for (const auto &[k, coefficient] : gap_rows_[site])
       {
-        auto at = std::find_if(blocks.edges.begin(),
-                               blocks.edges.end(),
+        auto at = std::find_if(blocks.offsets.begin(),
+                               blocks.offsets.end(),
                                [&, slave = k](const auto &e)
                                { return e.slave == slave && e.side == side && e.face == face; });
-        if (at == blocks.edges.end())
-          at = blocks.edges.insert(at, {k, side, face, {}});
-        for (unsigned int edge = 0; edge < 4; ++edge)
-          at->normal[edge] += coefficient * weight * value[edge] * pairing_[site].normal;
+        if (at == blocks.offsets.end())
+          at = blocks.offsets.insert(at, {k, side, face, {}});
+        for (unsigned int part = 0; part < value.size(); ++part)
+          at->normal[part] += coefficient * weight * sign * value[part] * pairing_[site].normal;
       }
   }
 
   void GeometryTangent::finish_offsets(const unsigned int pair, Blocks &blocks) const
   {
-    for (unsigned int i = 0; i < blocks.edges.size(); ++i)
+    for (unsigned int i = 0; i < blocks.offsets.size(); ++i)
     {
-      const unsigned int side = blocks.edges[i].side, face = blocks.edges[i].face;
+      const unsigned int side = blocks.offsets[i].side, face = blocks.offsets[i].face;
       const auto         same = [&](const unsigned int j)
-      { return blocks.edges[j].side == side && blocks.edges[j].face == face; };
+      { return blocks.offsets[j].side == side && blocks.offsets[j].face == face; };
       bool done = false;
       for (unsigned int j = 0; j < i; ++j)
         done = done || same(j);
-      for (unsigned int edge = 0; edge < 4 && !done; ++edge)
+      for (unsigned int part = 0; part < blocks.offsets[i].normal.size() && !done; ++part)
       {
-        const auto derivative = (side == 0 ? geometry_.slave : geometry_.master)[pair].edge_derivative(face, edge);
-        for (unsigned int j = i; j < blocks.edges.size(); ++j)
+        const auto derivative = (side == 0 ? geometry_.slave : geometry_.master)[pair].offset_derivative(face, part);
+        for (unsigned int j = i; j < blocks.offsets.size(); ++j)
           if (same(j))
             for (const NodeDerivative &d : derivative)
             {
-              const unsigned int column = blocks.node(d.node), row = blocks.slave(blocks.edges[j].slave);
-              blocks.gap[row * blocks.stride + column] += blocks.edges[j].normal[edge] * d.value;
+              const unsigned int column = blocks.node(d.node), row = blocks.slave(blocks.offsets[j].slave);
+              blocks.gap[row * blocks.stride + column] += blocks.offsets[j].normal[part] * d.value;
             }
       }
     }
-    blocks.edges.clear();
+    blocks.offsets.clear();
   }
 
   void GeometryTangent::add(const ContactState &state, const ContactResidual &residual, LinearSystem &system) const

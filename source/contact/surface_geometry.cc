@@ -1,5 +1,7 @@
 #include <nodus/contact/surface_geometry.h>
 
+#include <deal.II/base/symmetric_tensor.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,23 +14,10 @@ namespace Nodus
     /// Least length of an averaged normal in the plane of symmetry of its node, before it is made a unit vector.
     constexpr double in_plane = 0.5;
 
-    /// Corners of the edges of a face, and their middles as nodes of the quadratic face.
-    constexpr unsigned int edges[4][3] = {{0, 1, 1}, {0, 2, 3}, {1, 3, 5}, {2, 3, 7}};
-
     /// [v] with [v] w = v x w.
     dealii::Tensor<2, dim> cross_matrix(const Vector3 &v)
     {
       return dealii::Tensor<2, dim>({{0., -v[2], v[1]}, {v[2], 0., -v[0]}, {-v[1], v[0], 0.}});
-    }
-
-    /// Derivative of v/|v|.
-    dealii::Tensor<2, dim> unit_derivative(const Vector3 &v)
-    {
-      const double           norm   = v.norm();
-      dealii::Tensor<2, dim> result = -1. / (norm * norm * norm) * dealii::outer_product(v, v);
-      for (unsigned int c = 0; c < dim; ++c)
-        result[c][c] += 1. / norm;
-      return result;
     }
   } // namespace
 
@@ -53,6 +42,15 @@ namespace Nodus
     for (const SurfaceFace &face : faces)
       for (const unsigned int n : face.nodes)
         points_.push_back(positions[n]);
+  }
+
+  dealii::Tensor<2, dim> unit_derivative(const Vector3 &v)
+  {
+    const double           norm   = v.norm();
+    dealii::Tensor<2, dim> result = -1. / (norm * norm * norm) * dealii::outer_product(v, v);
+    for (unsigned int c = 0; c < dim; ++c)
+      result[c][c] += 1. / norm;
+    return result;
   }
 
   void add(std::vector<NodeDerivative> &derivative, const unsigned int node, const dealii::Tensor<2, dim> &value)
@@ -94,17 +92,10 @@ namespace Nodus
     for (unsigned int f = 0; f < faces_.size(); ++f)
       for (unsigned int n = 0; n < n_face_nodes; ++n)
       {
-        const unsigned int node   = faces_[f].nodes[n];
-        Vector3            normal = averaged_direction(f, n);
-        normal /= normal.norm();
-        if (on_symmetry_plane(node, normal))
-        {
-          for (unsigned int c = 0; c < dim; ++c)
-            if (fixed_[node][c])
-              normal[c] = 0.;
-          normal /= normal.norm();
-        }
-        nodal_normals_[f * n_face_nodes + n] = normal;
+        const Vector3     &unit              = unit_[f * n_face_nodes + n];
+        const Vector3      hung              = interpolated_direction(f, n);
+        const unsigned int node              = faces_[f].nodes[n];
+        nodal_normals_[f * n_face_nodes + n] = hung == Vector3() ? averaged_unit(node, unit) : hung / hung.norm();
       }
   }
 
@@ -131,19 +122,34 @@ namespace Nodus
     return sum;
   }
 
-  Vector3 SurfaceGeometry::averaged_direction(const unsigned int f, const unsigned int n) const
+  Vector3 SurfaceGeometry::averaged_unit(const unsigned int node, const Vector3 &unit) const
   {
-    const Vector3 &unit = unit_[f * node_shapes_.size() + n];
-    const auto    *hung = faces_[f].follower(n);
-    Vector3        sum;
+    Vector3 sum = sum_of_normals(node, unit);
+    if (sum == Vector3())
+      return sum;
+    sum /= sum.norm();
+    if (on_symmetry_plane(node, sum))
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+        if (fixed_[node][c])
+          sum[c] = 0.;
+      sum /= sum.norm();
+    }
+    return sum;
+  }
+
+  Vector3 SurfaceGeometry::interpolated_direction(const unsigned int f, const unsigned int n) const
+  {
+    const auto *const hung = faces_[f].follower(n);
+    Vector3           sum;
     for (unsigned int m = 0; hung && m < hung->masters.size(); ++m)
     {
-      const Vector3 normal = sum_of_normals(hung->masters[m].first, unit);
-      if (normal.norm() == 0.) // beyond a sharp edge
-        return sum_of_normals(faces_[f].nodes[n], unit);
-      sum += hung->masters[m].second / normal.norm() * normal;
+      const Vector3 normal = averaged_unit(hung->masters[m].first, unit_[f * node_shapes_.size() + n]);
+      if (normal == Vector3()) // beyond a sharp edge
+        return normal;
+      sum += hung->masters[m].second * normal;
     }
-    return hung ? sum : sum_of_normals(faces_[f].nodes[n], unit);
+    return sum;
   }
 
   bool SurfaceGeometry::on_symmetry_plane(const unsigned int node, const Vector3 &normal) const
@@ -162,9 +168,20 @@ namespace Nodus
                                                 const unsigned int           n,
                                                 std::vector<NodeDerivative> &derivative) const
   {
-    const unsigned int     node    = faces_[f].nodes[n];
-    const Vector3         &unit    = unit_[f * node_shapes_.size() + n];
-    const Vector3          sum     = averaged_direction(f, n);
+    const Vector3 &unit = unit_[f * node_shapes_.size() + n], hung = interpolated_direction(f, n);
+    if (hung == Vector3())
+      add_unit_derivative(faces_[f].nodes[n], unit, dealii::unit_symmetric_tensor<dim>(), derivative);
+    else
+      for (const auto &[master, weight] : faces_[f].follower(n)->masters)
+        add_unit_derivative(master, unit, weight * unit_derivative(hung), derivative);
+  }
+
+  void SurfaceGeometry::add_unit_derivative(const unsigned int            node,
+                                            const Vector3                &unit,
+                                            const dealii::Tensor<2, dim> &factor,
+                                            std::vector<NodeDerivative>  &derivative) const
+  {
+    const Vector3          sum     = sum_of_normals(node, unit);
     dealii::Tensor<2, dim> to_unit = unit_derivative(sum);
     if (on_symmetry_plane(node, sum / sum.norm()))
     {
@@ -177,15 +194,7 @@ namespace Nodus
           projector[c][c] = 1.;
       to_unit = unit_derivative(free) * projector;
     }
-    const auto *const hung         = faces_[f].follower(n);
-    bool              interpolated = hung;
-    for (unsigned int m = 0; interpolated && m < hung->masters.size(); ++m)
-      interpolated = sum_of_normals(hung->masters[m].first, unit).norm() > 0.;
-    if (!interpolated)
-      add_sum_derivative(node, unit, to_unit, derivative);
-    else
-      for (const auto &[master, weight] : hung->masters)
-        add_sum_derivative(master, unit, weight * to_unit * unit_derivative(sum_of_normals(master, unit)), derivative);
+    add_sum_derivative(node, unit, factor * to_unit, derivative);
   }
 
   void SurfaceGeometry::add_sum_derivative(const unsigned int            node,
@@ -244,98 +253,6 @@ namespace Nodus
           to_unit * (shape.d_eta[n] * cross_matrix(geometry.d_xi) - shape.d_xi[n] * cross_matrix(geometry.d_eta)));
   }
 
-  namespace
-  {
-    /// Middle of the edge from a to b: the chord turns by asin(rise / length) to either end's tangent.
-    Point edge_middle(const Point &a, const Point &b, const Vector3 &normal_a, const Vector3 &normal_b)
-    {
-      const Vector3 chord   = b - a;
-      const double  sine    = 0.5 * (chord * normal_b - chord * normal_a) / chord.norm();
-      const Vector3 sum     = normal_a + normal_b;
-      const double  sagitta = 0.5 * chord.norm() * std::tan(0.5 * std::asin(std::clamp(sine, -0.7, 0.7)));
-      return Point(a + 0.5 * chord + sagitta * sum / sum.norm());
-    }
-  } // namespace
-
-  Point SurfaceGeometry::smoothed_corner(const unsigned int f, const unsigned int n) const
-  {
-    const auto *const hung = faces_[f].follower(n);
-    if (!hung || hung->masters.size() != 2)
-      return positions_[faces_[f].nodes[n]];
-    const Vector3 &unit        = unit_[4 * f + n];
-    const auto     unit_normal = [&](const unsigned int node)
-    {
-      const Vector3 normal = sum_of_normals(node, unit);
-      return normal.norm() > 0. ? Vector3(normal / normal.norm()) : unit;
-    };
-    const unsigned int a = hung->masters[0].first, b = hung->masters[1].first;
-    return edge_middle(positions_[a], positions_[b], unit_normal(a), unit_normal(b));
-  }
-
-  /// Half an edge of a larger face is half of that edge's parabola.
-  Point SurfaceGeometry::smoothed_middle(const unsigned int f, const unsigned int a, const unsigned int b) const
-  {
-    for (const auto &[end, other] : {std::make_pair(a, b), std::make_pair(b, a)})
-      if (const auto *const hung = faces_[f].follower(end); hung && hung->masters.size() == 2)
-        for (unsigned int m = 0; m < 2; ++m)
-          if (hung->masters[m].first == faces_[f].nodes[other])
-            return Point(3. / 8. * Vector3(positions_[hung->masters[m].first]) +
-                         3. / 4. * Vector3(smoothed_corner(f, end)) -
-                         1. / 8. * Vector3(positions_[hung->masters[1 - m].first]));
-    return edge_middle(smoothed_corner(f, a), smoothed_corner(f, b), nodal_normal(f, a), nodal_normal(f, b));
-  }
-
-  void SurfaceGeometry::smooth()
-  {
-    points_.resize(9 * faces_.size());
-    for (unsigned int f = 0; f < faces_.size(); ++f)
-    {
-      Point *x = points_.data() + 9 * f;
-      // corner n of the face is node 2 (n % 2) + 6 (n / 2) of the quadratic one
-      for (unsigned int n = 0; n < 4; ++n)
-        x[2 * (n % 2) + 6 * (n / 2)] = smoothed_corner(f, n);
-      for (const auto &[a, b, m] : edges)
-        x[m] = smoothed_middle(f, a, b);
-      // eight-node face
-      x[4] = Point(0.5 * (Vector3(x[1]) + Vector3(x[3]) + Vector3(x[5]) + Vector3(x[7])) -
-                   0.25 * (Vector3(x[0]) + Vector3(x[2]) + Vector3(x[6]) + Vector3(x[8])));
-    }
-  }
-
-  double SurfaceGeometry::edge_function(const unsigned int edge, const double xi, const double eta)
-  {
-    const FaceShape shape(2, xi, eta); // the centre takes half of each middle
-    return shape.value[edges[edge][2]] + 0.5 * shape.value[4];
-  }
-
-  std::vector<NodeDerivative> SurfaceGeometry::edge_derivative(const unsigned int f, const unsigned int edge) const
-  {
-    const unsigned int a = edges[edge][0], b = edges[edge][1];
-    const Vector3      chord = positions_[faces_[f].nodes[b]] - positions_[faces_[f].nodes[a]];
-    const Vector3     &n_a = nodal_normal(f, a), &n_b = nodal_normal(f, b);
-    const Vector3      sum = n_a + n_b, m = sum / sum.norm(), bend = n_b - n_a;
-    const double       length = chord.norm(), sine = std::clamp(0.5 * (chord * bend) / length, -0.7, 0.7);
-    const double       angle = std::asin(sine), half_tangent = std::tan(0.5 * angle);
-    // sagitta = length/2 tan(angle/2), sin(angle) = q/length, q = chord . bend / 2
-    const double sagitta   = 0.5 * length * half_tangent;
-    const double to_q      = 0.25 * (1. + half_tangent * half_tangent) / std::cos(angle);
-    const double to_length = 0.5 * half_tangent - to_q * sine;
-
-    std::vector<NodeDerivative> derivative, nodal;
-    const Vector3               to_chord = 0.5 * to_q * bend + to_length / length * chord;
-    add(derivative, faces_[f].nodes[b], dealii::outer_product(m, to_chord));
-    add(derivative, faces_[f].nodes[a], -dealii::outer_product(m, to_chord));
-    const auto turn = sagitta * unit_derivative(sum), bending = 0.5 * to_q * dealii::outer_product(m, chord);
-    nodal_normal_derivative(f, a, nodal);
-    for (const NodeDerivative &d : nodal)
-      add(derivative, d.node, (turn - bending) * d.value);
-    nodal.clear();
-    nodal_normal_derivative(f, b, nodal);
-    for (const NodeDerivative &d : nodal)
-      add(derivative, d.node, (turn + bending) * d.value);
-    return derivative;
-  }
-
   Vector3 SurfaceGeometry::normal(const unsigned int f, const double xi, const double eta) const
   {
     const Vector3 area = faces_[f].orientation * at(f, xi, eta).area_vector();
@@ -349,12 +266,5 @@ namespace Nodus
     for (unsigned int n = 0; n < shape.n; ++n)
       normal += shape.value[n] * nodal_normal(f, n);
     return normal / normal.norm();
-  }
-
-  Vector3 SurfaceGeometry::offset(const unsigned int f, const double xi, const double eta) const
-  {
-    if (shape_degree_ == degree_)
-      return Vector3();
-    return at(f, xi, eta).x - FaceGeometry(faces_[f], FaceShape(degree_, xi, eta), positions_).x;
   }
 } // namespace Nodus

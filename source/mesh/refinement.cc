@@ -108,9 +108,10 @@ namespace Nodus
             triangulation, error, parameters.refine_fraction, parameters.coarsen_fraction);
       else
       {
-        const double share = parameters.target_error * parameters.target_error * indicator.squared_norm / n_cells;
+        const double share  = parameters.target_error * parameters.target_error * indicator.squared_norm / n_cells;
+        const bool   missed = indicator.relative_error(triangulation) > parameters.target_error;
         for (const auto &cell : triangulation.active_cell_iterators())
-          if (const double here = error(cell->active_cell_index()); cell->is_locally_owned() && here > share)
+          if (const double here = error(cell->active_cell_index()); cell->is_locally_owned() && missed && here > share)
             cell->set_refine_flag();
           else if (cell->is_locally_owned() && here < coarsening_margin * share)
             cell->set_coarsen_flag();

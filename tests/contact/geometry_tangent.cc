@@ -1,8 +1,8 @@
 // The contact tangent with the variation of the geometry against central differences of the contact residual with
 // pairing renewed at every step, nodal forces kept (multipliers follow the areas), frictionless, on bumpy surfaces that
 // do not match. With slave nodes on the master it is exact for the nodal scheme on facets, with averaged normals and on
-// rigid masters in closed form. On smoothed surfaces and averaged jumps, what is left out (geometry_tangent.h) stays
-// small against what is gained.
+// rigid masters in closed form, with hanging nodes on both surfaces too. On smoothed surfaces and averaged jumps, what
+// is left out (geometry_tangent.h) stays small against what is gained.
 
 #include <nodus/contact/geometry_tangent.h>
 
@@ -21,17 +21,39 @@ namespace
     std::vector<double>   R(layout.size(), 0.);
     for (unsigned int s = 0; s < fixture.surfaces->n_sites(); ++s)
       for (auto e = fixture.jump.begin(s); e != fixture.jump.end(s); ++e)
-        for (unsigned int c = 0; c < 3; ++c)
-          R[fixture.surfaces->nodes()[e->node].dofs[c]] += e->weight * r.jump[s][c];
+        fixture.surfaces->expand(e->node,
+                                 e->weight,
+                                 [&](const unsigned int node, const double weight)
+                                 {
+                                   for (unsigned int c = 0; c < 3; ++c)
+                                     R[fixture.surfaces->nodes()[node].dofs[c]] += weight * r.jump[s][c];
+                                 });
     // gaps, not their integrals: these vary with the areas
     for (unsigned int k = 0; k < layout.n_slave_nodes; ++k)
       R[layout.lambda(k)] = r.lambda[k] / fixture.weights.area()[k];
     return R;
   }
 
+  /// Hanging nodes go to where those that they follow take them.
+  void follow(ContactFixture &fixture)
+  {
+    auto &x = fixture.state.x;
+    for (unsigned int i = 0; i < x.size(); ++i)
+    {
+      const SurfaceNode &node = fixture.surfaces->nodes()[i];
+      if (node.masters.empty())
+        continue;
+      Vector3 at = node.offset;
+      for (const auto &[master, weight] : node.masters)
+        at += weight * x[master];
+      x[i] = Point(at);
+    }
+  }
+
   /// Pairing at the state's positions; multipliers keep their nodal forces.
   void pair_again(ContactFixture &fixture, const std::vector<double> &force)
   {
+    follow(fixture);
     fixture.pair_at(fixture.state.x);
     for (unsigned int k = 0; k < force.size(); ++k)
       fixture.state.lambda[k] = force[k] / fixture.weights.area()[k];
@@ -50,7 +72,8 @@ int main(int argc, char **argv)
     Pair::Surface surface;
     Pair::Normal  normal;
     double        tolerance;
-    Shape         shape = Shape::mesh; ///< of a rigid master
+    Shape         shape   = Shape::mesh; ///< of a rigid master
+    bool          hanging = false;       ///< nodes on both surfaces
   };
   const Kind kinds[] = {
       {"nodal, facets, master normals", Pair::Scheme::nodal, Pair::Surface::faceted, Pair::Normal::master_facet, 1e-5},
@@ -76,8 +99,29 @@ int main(int argc, char **argv)
        Pair::Surface::faceted,
        Pair::Normal::averaged,
        0.15,
-       Shape::paraboloid}};
-  for (const auto &[name, scheme, surface, normal, tolerance, shape] : kinds)
+       Shape::paraboloid},
+      {"nodal, facets, hanging nodes",
+       Pair::Scheme::nodal,
+       Pair::Surface::faceted,
+       Pair::Normal::averaged,
+       1e-5,
+       Shape::mesh,
+       true},
+      {"nodal, smoothed, hanging nodes",
+       Pair::Scheme::nodal,
+       Pair::Surface::smoothed,
+       Pair::Normal::averaged,
+       0.003,
+       Shape::mesh,
+       true},
+      {"averaged, smoothed, hanging nodes",
+       Pair::Scheme::averaged,
+       Pair::Surface::smoothed,
+       Pair::Normal::averaged,
+       0.2, // rougher
+       Shape::mesh,
+       true}};
+  for (const auto &[name, scheme, surface, normal, tolerance, shape, hanging] : kinds)
   {
     auto p    = pair(region(2, {z_minus}), region(1, {z_plus}));
     p.scheme  = scheme;
@@ -92,10 +136,16 @@ int main(int argc, char **argv)
       p.master_surface.axis   = apex ? Vector3({0.1, 0.2, 1.}) : Vector3({1., 0.1, 0.});
       p.master_surface.radius = 2.;
     }
-    ContactFixture fixture({box("lower", "4,4,1", {-0.1, -0.1, 0}, {1.1, 1.1, 1}, 1, 0),
-                            box("upper", "2,2,1", {0.13, 0.07, 1}, {0.93, 0.87, 2}, 1, 0)},
-                           {p},
-                           1);
+    std::vector<BodyParameters> bodies{box("lower", "4,4,1", {-0.1, -0.1, 0}, {1.1, 1.1, 1}, 1, 0),
+                                       box("upper", "2,2,1", {0.13, 0.07, 1}, {0.93, 0.87, 2}, 1, 0)};
+    if (hanging)
+    {
+      bodies[0].refine_where = "x+y<1";
+      bodies[1].refine_where = "x>0.5";
+      for (auto &body : bodies)
+        body.local_refinement = 1;
+    }
+    ContactFixture fixture(bodies, {p}, 1);
     auto          &state = fixture.state;
 
     std::mt19937                           generator(1);
@@ -104,6 +154,7 @@ int main(int argc, char **argv)
       x += Vector3({0.01 * random(generator), 0.01 * random(generator), 0.1 * x[0] * x[1] + 0.005 * random(generator)});
     for (unsigned int iteration = 0; iteration < 20; ++iteration) // slave nodes onto the master
     {
+      follow(fixture);
       fixture.pair_at(state.x);
       for (unsigned int k = 0; k < fixture.surfaces->slave_nodes().size(); ++k)
         state.x[fixture.surfaces->slave_nodes()[k].node] -= fixture.jump.jump(k, state.x);
@@ -134,7 +185,7 @@ int main(int argc, char **argv)
     double       error[2] = {0., 0.}, left[2] = {0., 0.}, gained[2] = {0., 0.}; // forces, gaps
     const double step = 1e-6;
     for (unsigned int i = 0; i < state.x.size(); ++i)
-      for (unsigned int c = 0; c < 3; ++c)
+      for (unsigned int c = 0; c < 3 && fixture.surfaces->nodes()[i].masters.empty(); ++c)
       {
         const DoFIndex      column = fixture.surfaces->nodes()[i].dofs[c];
         std::vector<double> difference(K.m(), 0.);

@@ -63,13 +63,13 @@ namespace Nodus
       unsigned int              stride = 0;
       std::vector<Matrix3>      force; ///< row * stride + column
       std::vector<Vector3>      gap;   ///< slave * stride + column
-      /// What the middles of the four edges of a face add to the gap row of a slave: side 0 slave or 1 master.
-      struct Edges
+      /// What the parts of the offset of a face add to the gap row of a slave: side 0 slave or 1 master.
+      struct Offset
       {
         unsigned int           slave, side, face;
-        std::array<Vector3, 4> normal;
+        std::array<Vector3, 8> normal;
       };
-      std::vector<Edges> edges;
+      std::vector<Offset> offsets;
 
       void         clear();
       unsigned int node(unsigned int n);

@@ -17,6 +17,8 @@ namespace Nodus
   };
   /// Adds to the derivative with respect to @p node.
   void add(std::vector<NodeDerivative> &derivative, unsigned int node, const dealii::Tensor<2, dim> &value);
+  /// Derivative of v/|v|.
+  dealii::Tensor<2, dim> unit_derivative(const Vector3 &v);
 
   /// Shape of the faces of one side at given positions, with normals averaged at the nodes.
   ///
@@ -76,10 +78,10 @@ namespace Nodus
     {
       return shape_degree_ != degree_;
     }
-    /// The offset is the sum over the four edges of a function of (xi, eta) times the offset of the edge's middle, and
-    /// its derivative with respect to the nodes likewise.
-    static double               edge_function(unsigned int edge, double xi, double eta);
-    std::vector<NodeDerivative> edge_derivative(unsigned int f, unsigned int edge) const;
+    /// The offset is the sum over the middles of the four edges and the four corners, which move only where they hang,
+    /// of a function of (xi, eta) times the offset there, and its derivative with respect to the nodes likewise.
+    static std::array<double, 8> offset_functions(double xi, double eta);
+    std::vector<NodeDerivative>  offset_derivative(unsigned int f, unsigned int part) const;
 
     /// Add to @p derivative that of the normals with respect to the nodes, at fixed local coordinates. That of the face
     /// normal leaves the smoothing out.
@@ -106,17 +108,37 @@ namespace Nodus
     void for_faces(unsigned int node, const Vector3 &unit, const Function &g) const;
     /// Sum of the weighted normals of these.
     Vector3 sum_of_normals(unsigned int node, const Vector3 &unit) const;
-    /// The same of node n of face f; interpolated unit normals where it hangs.
-    Vector3 averaged_direction(unsigned int f, unsigned int n) const;
+    /// The unit vector of that, in the plane of symmetry where the node lies on one; zero when there are no such faces.
+    Vector3 averaged_unit(unsigned int node, const Vector3 &unit) const;
+    /// Of node n of face f where it hangs: interpolated from those of the nodes that it follows; zero for others, and
+    /// beyond sharp edges.
+    Vector3 interpolated_direction(unsigned int f, unsigned int n) const;
     void    add_sum_derivative(unsigned int                  node,
                                const Vector3                &unit,
                                const dealii::Tensor<2, dim> &factor,
                                std::vector<NodeDerivative>  &derivative) const;
+    void    add_unit_derivative(unsigned int                  node,
+                                const Vector3                &unit,
+                                const dealii::Tensor<2, dim> &factor,
+                                std::vector<NodeDerivative>  &derivative) const;
     bool    on_symmetry_plane(unsigned int node, const Vector3 &normal) const;
-    void    smooth();
-    /// Corner n of face f of degree 1; one that hangs is in the middle of the larger face's smoothed edge.
-    Point smoothed_corner(unsigned int f, unsigned int n) const;
-    Point smoothed_middle(unsigned int f, unsigned int a, unsigned int b) const;
+
+    void smooth();
+    /// Of node n of face f where it hangs in the middle of an edge of a larger face, or nullptr.
+    const SurfaceFace::Follower *on_larger_edge(unsigned int f, unsigned int n) const;
+    /// Normal at an end of that edge.
+    Vector3 end_normal(unsigned int f, unsigned int n, unsigned int master) const;
+    /// Whether the edge to another corner is half of that edge.
+    bool is_half(unsigned int f, unsigned int end, unsigned int other) const;
+    /// Smoothed position minus position of a corner: one that hangs is in the middle of the larger face's smoothed
+    /// edge.
+    Vector3 corner_offset(unsigned int f, unsigned int n) const;
+    /// The same of the middle of the edge from corner a to corner b.
+    Vector3 middle_offset(unsigned int f, unsigned int a, unsigned int b) const;
+    void    corner_offset_derivative(unsigned int                  f,
+                                     unsigned int                  n,
+                                     const dealii::Tensor<2, dim> &factor,
+                                     std::vector<NodeDerivative>  &derivative) const;
   };
 } // namespace Nodus
 
