@@ -14,6 +14,12 @@
 
 namespace Nodus
 {
+  namespace
+  {
+    /// Of the contact force: the log says nothing of smaller friction.
+    constexpr double negligible_friction = 1e-3;
+  } // namespace
+
   /// Of the solution at hand, with its fields.
   RefinementIndicator ContactProblem::Implementation::estimate_error()
   {
@@ -136,31 +142,45 @@ namespace Nodus
   {
     const auto before = resultants;
     impose(path.time());
-    motions_unknown = false;
-    try
-    {
-      solve_increment();
-    }
-    catch (const SolverFailure &failure)
-    {
-      diagnosis.end_attempt(failure.what());
-      roll_back();
-      console.remark(std::string("no equilibrium on the new mesh: ") + failure.what() +
-                     "; the next increment goes on from the state as it was taken over");
-      return;
-    }
+    pair_surfaces();
+    // where nothing else holds a body, sites that stick have to
+    status->hold_friction(Status::Hold::all);
+    const bool free = !free_motions(OwnedNodes(dof_handler, *mapping)).empty();
+    for (const Status::Hold hold : {free ? Status::Hold::slipping : Status::Hold::all, Status::Hold::none})
+      try
+      {
+        motions_unknown = false;
+        status->hold_friction(hold);
+        solve_increment();
+        break;
+      }
+      catch (const SolverFailure &failure)
+      {
+        diagnosis.end_attempt(failure.what());
+        roll_back();
+        const bool last = hold == Status::Hold::none;
+        console.remark(std::string("no equilibrium on the new mesh: ") + failure.what() +
+                       (last ? "; the next increment goes on from the state as it was taken over"
+                             : "; again with sites that stick and slip"));
+        if (last)
+          return;
+      }
     committed_applied = applied_forces();
     for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
       committed_site_force[s] = -residual.jump[s];
     commit();
+    status->hold_friction(Status::Hold::none);
     update_results();
+    const auto change = [](const Vector3 &force, const Vector3 &force_before)
+    { return force_before.norm() > 0. ? 100. * (force - force_before).norm() / force_before.norm() : 0.; };
     for (unsigned int p = 0; p < resultants.size(); ++p)
     {
-      const double       force = before[p].slave_force.norm();
       std::ostringstream text;
       text.precision(3);
       text << "new mesh: the contact force of " << resultants[p].name << " changes by "
-           << (force > 0. ? 100. * (resultants[p].slave_force - before[p].slave_force).norm() / force : 0.) << " %";
+           << change(resultants[p].slave_force, before[p].slave_force) << " %";
+      if (before[p].friction.norm() > negligible_friction * before[p].slave_force.norm())
+        text << ", friction by " << change(resultants[p].friction, before[p].friction) << " %";
       console.remark(text.str());
     }
   }

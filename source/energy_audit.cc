@@ -83,7 +83,7 @@ namespace Nodus
       const std::array<double, 2> slip        = contact->slip(state, s);
       const Vector3              &n           = pairing[s].normal;
       double                      dissipation = 0.;
-      for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int i = 0; i < 2 && !status->holds_friction(s); ++i)
         dissipation -= force * pairing[s].tangent[i] * slip[i];
       sums[0] += 0.5 * (committed_site_force[s] + force) * jump.rigid(s).moved;
       sums[2] += 0.5 * ((committed_site_force[s] + force) * n) * (n * jump.jump_of_increment(s, state.increment));

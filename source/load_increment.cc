@@ -294,7 +294,7 @@ namespace Nodus
   {
     std::vector<std::array<double, 2>> slip;
     for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
-      slip.push_back(contact->slip(state, s));
+      slip.push_back(status->holds_friction(s) ? std::array<double, 2>{{0., 0.}} : contact->slip(state, s));
     status->commit(slip);
     solid->commit();
     audit_energies();

@@ -101,18 +101,25 @@ namespace Nodus
 
     using Cell = dealii::DoFHandler<dim>::active_cell_iterator;
 
+    /// Whether two integration points lie on the same face.
+    bool same_face(const ContactSurfaces &surfaces, const unsigned int a, const unsigned int b)
+    {
+      return surfaces.pair(a) == surfaces.pair(b) && surfaces.point(a).face == surfaces.point(b).face;
+    }
+
     /// Names of this rank's slave faces with integration points, and of each the first of these among the sites.
     std::map<Checkpoints::Piece::FaceKey, unsigned int> faces_with_points(const ContactSurfaces         &surfaces,
                                                                           const dealii::DoFHandler<dim> &dof_handler)
     {
-      std::map<std::set<DoFIndex>, unsigned int> first_point; // by the nodes of the face
+      std::map<unsigned int, std::vector<std::pair<std::set<DoFIndex>, unsigned int>>> first_point; // nodes; by cell
       for (unsigned int s = surfaces.n_sites(); s-- > surfaces.slave_nodes().size();)
-        if (surfaces.is_owned(s))
+        if (surfaces.is_owned(s) && (s == surfaces.slave_nodes().size() || !same_face(surfaces, s - 1, s)))
         {
+          const SurfaceFace &face = surfaces.slave_faces(surfaces.pair(s))[surfaces.point(s).face];
           std::set<DoFIndex> nodes;
-          for (const unsigned int n : surfaces.slave_faces(surfaces.pair(s))[surfaces.point(s).face].nodes)
+          for (const unsigned int n : face.nodes)
             nodes.insert(surfaces.nodes()[n].dofs[0]);
-          first_point[nodes] = s;
+          first_point[face.cell].emplace_back(nodes, s);
         }
       std::map<Checkpoints::Piece::FaceKey, unsigned int> faces;
       if (first_point.empty())
@@ -120,18 +127,20 @@ namespace Nodus
       const auto           &fe = dof_handler.get_fe();
       std::vector<DoFIndex> dofs(fe.n_dofs_per_cell());
       for (const auto &cell : dof_handler.active_cell_iterators())
-        if (cell->is_locally_owned() && cell->at_boundary())
+        if (const auto found = first_point.find(cell->active_cell_index());
+            cell->is_locally_owned() && found != first_point.end())
         {
           cell->get_dof_indices(dofs);
           for (const unsigned int face : cell->face_indices())
-          {
-            std::set<DoFIndex> nodes;
-            for (unsigned int i = 0; i < dofs.size(); ++i)
-              if (fe.system_to_component_index(i).first == 0 && fe.has_support_on_face(i, face))
-                nodes.insert(dofs[i]);
-            if (const auto found = first_point.find(nodes); found != first_point.end())
-              faces[{cell->id().to_binary<dim>(), face}] = found->second;
-          }
+            for (const auto &[nodes, first] : found->second)
+            {
+              unsigned int shared = 0; // most, for hanging nodes may go by another number; faces share an edge at most
+              for (unsigned int i = 0; i < dofs.size(); ++i)
+                shared += fe.system_to_component_index(i).first == 0 && fe.has_support_on_face(i, face) &&
+                          nodes.count(dofs[i]) == 1;
+              if (2 * shared > nodes.size())
+                faces[{cell->id().to_binary<dim>(), face}] = first;
+            }
         }
       return faces;
     }
@@ -140,8 +149,7 @@ namespace Nodus
     unsigned int n_points(const ContactSurfaces &surfaces, const unsigned int first)
     {
       unsigned int end = first;
-      while (end < surfaces.n_sites() && surfaces.pair(end) == surfaces.pair(first) &&
-             surfaces.point(end).face == surfaces.point(first).face)
+      while (end < surfaces.n_sites() && same_face(surfaces, first, end))
         ++end;
       return end - first;
     }

@@ -218,7 +218,10 @@ namespace Nodus
       const double h_tau     = status_.tangential_augmentation(point.slaves[0], threshold);
       Column3      pi        = Column3::Zero();
       Matrix3      K_B       = Matrix3::Zero();
-      if (slips)
+      const bool   held      = status_.holds_friction(pointwise ? point.site : point.slaves[0]);
+      if (slips && held) // Lambda stays as it is
+        pi = Lambda_slip;
+      else if (slips)
         direction(Lambda_slip + h_tau * slip_slip, pi, K_B);
 
       const unsigned int n_unknowns = first + 3 * n_nodes;
@@ -268,7 +271,7 @@ namespace Nodus
         if (n_nodes > 1)
           r_t.segment<2>(ia + 1) +=
               -W * i.stick * i.tangent * slip_stick + (2. * W / h_tau) * i.slip * i.tangent * (Lambda_slip - pi);
-        for (unsigned int t = 0; t < 2; ++t)
+        for (unsigned int t = 0; t < 2 && !held; ++t)
           r(ia + 1 + t) -= W * i.void_tangent[t] * Lambda_void[t].dot(i.axis[t]);
         for (unsigned int c = 0; c < n_nodes; ++c)
         {

@@ -113,12 +113,14 @@ namespace Nodus
                     for (unsigned int n = 0; n < places.size(); ++n)
                     {
                       const unsigned int i = places[n];
-                      const Vector3      t = field.friction[i] - field.pressure[i] * field.normal[i];
-                      const Vector3 bulk   = stress.stress(surfaces.nodes()[face.nodes[n]].dofs[0]) * field.normal[i];
+                      // a node at the rim of the master has its pressure on a part of its area; hanging ones have none
+                      const double  part = field.area[i] > 0. ? std::min(1., places.size() * field.area[i] / A) : 1.;
+                      const Vector3 t    = part * (field.friction[i] - field.pressure[i] * field.normal[i]);
+                      const Vector3 bulk = stress.stress(surfaces.nodes()[face.nodes[n]].dofs[0]) * field.normal[i];
                       if (field.paired[i])
                         jump += (t - bulk).norm_square() / places.size();
                       traction = std::max(traction, t.norm_square());
-                      friction = std::max(friction, field.friction[i].norm_square());
+                      friction = std::max(friction, part * part * field.friction[i].norm_square());
                       open     = open || field.status[i] == ContactStatus::open;
                       closed   = closed || field.status[i] != ContactStatus::open;
                       stick    = stick || field.status[i] == ContactStatus::stick;

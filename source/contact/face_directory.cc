@@ -74,7 +74,14 @@ namespace Nodus
                 for (const auto &[master, weight] : *masters)
                 {
                   const Point &X = followed_.at(master);
-                  record.followers.push_back({n, dim * master, {X[0], X[1], X[2]}, weight, 0.});
+                  if (masters->size() == 1) // the node in the middle of a larger cell's edge is the same node
+                    for (unsigned int c = 0; c < dim; ++c)
+                    {
+                      record.dofs[n][c] = dim * master + c;
+                      record.X[n][c]    = X[c];
+                    }
+                  else
+                    record.followers.push_back({n, dim * master, {X[0], X[1], X[2]}, weight, 0.});
                 }
             own_[2 * pair + side].push_back(record);
           }

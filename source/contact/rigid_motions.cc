@@ -160,7 +160,7 @@ namespace Nodus
         hold();
       };
       hold_towards(pairing[s].normal);
-      if (!status.friction(s))
+      if (!status.friction(s) || (status.holds_friction(s) && !status.stick(s)))
         continue;
       Vector3 friction;
       if (!status.stick(s))

@@ -247,7 +247,7 @@ namespace Nodus
       size = pressure > 0. ? std::abs(value) / pressure : 1.;
       return pulls ? Contradiction::tension : Contradiction::penetration;
     }
-    if (!friction(site) || (merged_ && !had_friction_[site]))
+    if (!friction(site) || (holds_friction(site) && !stick(site)) || (merged_ && !had_friction_[site]))
       return Contradiction::none;
     const double rho  = tangential_augmentation(site, now_.threshold[site]);
     const double norm = std::hypot(input.Lambda[site][0] + rho * input.slip[site][0],

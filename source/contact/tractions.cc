@@ -83,7 +83,7 @@ namespace Nodus
     void sum_over_ranks(ContactResultants &result, const MPI_Comm communicator)
     {
       Vector3 *const vectors[] = {
-          &result.slave_force, &result.slave_moment, &result.master_force, &result.master_moment};
+          &result.slave_force, &result.slave_moment, &result.master_force, &result.master_moment, &result.friction};
       unsigned int *const counts[] = {&result.open,
                                       &result.slip,
                                       &result.stick,
@@ -264,6 +264,8 @@ namespace Nodus
       if (!surfaces.is_owned(i))
         continue;
       ContactResultants &result = all[surfaces.pair(i)];
+      for (const Vector3 &tangent : pairing[i].tangent)
+        result.friction -= (residual.jump[i] * tangent) * tangent;
       for (auto e = jump.begin(i); e != jump.end(i); ++e)
       {
         // the residual is minus the force on the body

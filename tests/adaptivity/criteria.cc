@@ -58,6 +58,7 @@ namespace
                                          hold("guide", region(2, {z_plus}), {0, 1})};
     p.contact_pairs                   = {pair(region(2, {z_minus}), region(1, {z_plus}))};
     p.contact_pairs[0].scheme         = ContactPairParameters::Scheme::averaged;
+    p.contact_pairs[0].normal         = ContactPairParameters::Normal::averaged;
     p.contact_pairs[0].initial_status = ContactPairParameters::InitialStatus::closed;
     p.load_stepping.increments        = {2};
     p.output.results_folder           = "criteria_results";

@@ -127,4 +127,28 @@ int main(int argc, char **argv)
               1.);
       }
     }
+
+  // A slave region that ends where the cells become coarser: the node in the middle of the coarse edge belongs to it.
+  for (const auto scheme : {Scheme::averaged, Scheme::nodal, Scheme::integration_point})
+  {
+    Parameters p;
+    p.degree                     = 2;
+    p.bodies                     = {box("block", "2,1,1", {0, 0, -1}, {2, 1, 0}, 1000., 0.3)};
+    p.bodies[0].local_refinement = 1;
+    p.bodies[0].refine_where     = "x<1";
+    p.boundary_conditions        = {hold("ground", region(1, {z_minus}), {0, 1, 2})};
+    p.contact_pairs              = {pair(region(1, {z_plus}, "x<1"), RegionParameters())};
+    auto &contact                = p.contact_pairs[0];
+    contact.scheme               = scheme;
+    auto &plane                  = contact.master_surface;
+    plane.shape                  = MasterSurfaceParameters::Shape::plane;
+    plane.axis                   = Vector3({0., 0., -1.});
+    plane.motion.translation     = {"0", "0", "-0.001*t"};
+    contact.initial_status       = ContactPairParameters::InitialStatus::closed;
+    p.output.results_folder      = "patch_hanging_results";
+    p.output.write_vtu           = false;
+    ContactProblem problem(p, world(), log());
+    problem.run();
+    check("rim beside coarser cells: displacement", problem.displacement(1, {1., 0.5, 0.})[2], -0.001, 1e-8);
+  }
 }

@@ -1,13 +1,12 @@
 // A block pressed on a larger one and dragged while the mesh is refined and coarsened after each increment. The contact
 // balances, the friction is mu times the pressing force where all slips (V = 25 from a pressure of 25 on the unit
 // square), a change of the mesh leaves the forces of these coarse meshes as they are to 1 %, and the same meshes and
-// forces arise on any number of ranks and after a restart.
+// forces arise on any number of ranks and after a restart on another number.
 
 #include "../cases.h"
 
 #include <deal.II/base/mpi.h>
 
-#include <filesystem>
 #include <sstream>
 
 using namespace Cases;
@@ -56,6 +55,36 @@ namespace
     return p;
   }
 
+  /// A plate that is pressed on a plane and pushed along it until it slips where it is pushed, as in
+  /// prm/plate_on_rigid_plane.prm; then all its cells are split while the loads stay.
+  Parameters pushed_plate(const double friction)
+  {
+    Parameters p;
+    p.bodies              = {box("plate", "16,5,1", {0, 0, 0}, {40, 40, 1}, 1.3e5, 0.2)};
+    p.boundary_conditions = {
+        hold("held edge", region(1, {x_plus}), {0}),
+        hold("plane strain", region(1, {z_minus, z_plus}), {2}),
+        condition("pressing", BoundaryConditionParameters::Type::traction, region(1, {y_plus}), {1}, {"-50*min(t,1)"}),
+        condition("pushing", BoundaryConditionParameters::Type::traction, region(1, {x_minus}), {0}, {"150*min(t,1)"})};
+    p.contact_pairs               = {pair(region(1, {y_minus}), RegionParameters(), friction)};
+    auto &contact                 = p.contact_pairs[0];
+    contact.scheme                = ContactPairParameters::Scheme::averaged;
+    contact.initial_status        = ContactPairParameters::InitialStatus::closed;
+    contact.normal                = ContactPairParameters::Normal::averaged;
+    contact.master_surface.shape  = MasterSurfaceParameters::Shape::plane;
+    contact.master_surface.axis   = Vector3({0., 1., 0.});
+    p.load_stepping.interval_ends = {1, 2};
+    p.load_stepping.increments    = {1, 2};
+    p.adaptivity.interval         = 1;
+    p.adaptivity.maximum_level    = 1;
+    p.adaptivity.marking          = AdaptivityParameters::Marking::target_error;
+    p.adaptivity.target_error     = 1e-9;
+    p.output.results_folder       = "mid_path_results";
+    p.output.write_vtu            = false;
+    p.output.checkpoint_interval  = 0;
+    return p;
+  }
+
   struct Run
   {
     std::vector<Vector3>      force;
@@ -64,11 +93,14 @@ namespace
     double                    unbalanced     = 0.;
   };
 
-  Run follow(const Parameters &p, const bool restart = false)
+  /// On the ranks of @p communicator; MPI_COMM_NULL on the others.
+  Run follow(const Parameters &p, const MPI_Comm communicator, const bool restart = false)
   {
-    Run                result;
+    Run result;
+    if (communicator == MPI_COMM_NULL)
+      return result;
     std::ostringstream log;
-    ContactProblem     problem(p, world(), log);
+    ContactProblem     problem(p, communicator, log);
     if (restart)
       problem.restart();
     problem.on_increment(
@@ -94,12 +126,14 @@ namespace
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  MPI_Comm                                 first_rank;
+  MPI_Comm_split(world(), root() ? 0 : MPI_UNDEFINED, 0, &first_rank);
   using Scheme                                    = ContactPairParameters::Scheme;
   const std::pair<Scheme, const char *> schemes[] = {
       {Scheme::averaged, "averaged"}, {Scheme::nodal, "nodal"}, {Scheme::integration_point, "integration points"}};
   for (const auto &[scheme, name] : schemes)
   {
-    const Run run = follow(dragged_block(scheme, "mid_path_results"));
+    const Run run = follow(dragged_block(scheme, "mid_path_results"), world());
     if (root())
     {
       std::cout << name << ":" << std::endl << std::setprecision(9);
@@ -115,16 +149,43 @@ int main(int argc, char **argv)
     check("  the mesh changes", run.slave_nodes.front() != run.slave_nodes.back());
     if (scheme != Scheme::averaged)
       continue;
-    const Run again = follow(dragged_block(scheme, "mid_path_results"), true);
-    check("  restart: friction at the end", again.force.back()[0], run.force.back()[0], 1e-8);
-    check("  restart: the same mesh", again.slave_nodes.back() == run.slave_nodes.back());
+    // written by all ranks and read by one, then the other way round
+    const auto check_restart = [&](const MPI_Comm writes, const MPI_Comm reads, const unsigned int interval)
+    {
+      Parameters p                 = dragged_block(scheme, "mid_path_results");
+      p.output.checkpoint_interval = interval;
+      if (writes != world())
+        follow(p, writes);
+      MPI_Barrier(world());
+      const Run again = follow(p, reads, true);
+      MPI_Barrier(world());
+      const std::string name = "  restart after increment " + std::to_string(interval);
+      if (!root())
+        return;
+      check(name + ": friction at the end", again.force.back()[0], run.force.back()[0], 1e-8);
+      check(name + ": the same mesh", again.slave_nodes.back() == run.slave_nodes.back());
+      check(name + ": increments", again.force.size() == run.force.size() - interval);
+    };
+    check_restart(world(), first_rank, 5);
+    check_restart(first_rank, world(), 6);
   }
 
-  const Run run = follow(held_block());
+  const Run run = follow(held_block(), world());
   if (std::getenv("NODUS_TEST_LOG") != nullptr && root())
     for (unsigned int i = 0; i < run.force.size(); ++i)
       std::cout << run.slave_nodes[i] << " sites, force " << run.force[i] << std::endl;
   // it comes back to the same two meshes again and again
   check("held while cells are split and joined: the same mesh", run.slave_nodes[12] == run.slave_nodes[20]);
   check("held while cells are split and joined: pressing force", run.force[20][2], run.force[12][2], 1e-4);
+
+  // motion that is due to the mesh alone leaves friction as it is
+  for (const double friction : {0.2, 1.})
+  {
+    const Run         plate = follow(pushed_plate(friction), world());
+    const std::string name  = "plate, mu = " + std::to_string(friction).substr(0, 3);
+    if (!root())
+      continue;
+    check(name + ": the mesh is finer", plate.slave_nodes.back() > plate.slave_nodes.front());
+    check(name + ": friction on the finer mesh", plate.force.back()[0], plate.force.front()[0], 5e-3);
+  }
 }

@@ -4,7 +4,7 @@
 The force history on adaptive meshes against that on the uniform mesh of the same smallest cells. Writes ironing.md,
 ironing.png.
 
-    ironing.py [--report]     (--report: from the runs that are there)
+    ironing.py [NAME ...]     (all cases without names; --report: from the runs that are there)
 """
 
 import json
@@ -65,6 +65,9 @@ end
 """
 
 
+MERGED = {f"{loop} loop/Mode": "newton" for loop in ("Geometry", "Threshold", "Status")}
+
+
 def adaptive(level, interval=2, fraction=0.93):
     return {"Adaptivity/Interval": interval, "Adaptivity/Initial cycles": level, "Adaptivity/Maximum level": level,
             "Adaptivity/Contact distance": 0.12, "Adaptivity/Refine fraction": fraction,
@@ -83,7 +86,7 @@ CASES = {
 
 def measure(name, keys):
     path = common.write_case("adaptivity/ironing", PRM)
-    run = common.run(path, "adaptivity/ironing_" + re.sub("[, ]+", "_", name), keys)
+    run = common.run(path, "adaptivity/ironing_" + re.sub("[, ]+", "_", name), {**MERGED, **keys})
     history = [[row["time"], row["slave force x"], row["slave force z"]] for row in run.contact()]
     unknowns = [int(found) for found in re.findall(r"-> (\d+) unknowns", run.log)]
     unknowns = unknowns or [int(re.search(r"(\d+) displacement degrees of freedom", run.log).group(1))]
@@ -100,13 +103,16 @@ def differences(run, reference):
 
 def main():
     kept = os.path.join(common.SCRATCH, "adaptivity", "ironing.json")
-    if "--report" in sys.argv:
+    done = {}
+    if os.path.exists(kept):
         with open(kept) as file:
-            found = json.load(file)
-    else:
-        found = [measure(name, keys) for name, keys in CASES.items()]
-        with open(kept, "w") as file:
-            json.dump(found, file, indent=1)
+            done = {run["name"]: run for run in json.load(file)}
+    for name in sys.argv[1:] or CASES:
+        if name != "--report":
+            done[name] = measure(name, CASES[name])
+    found = [done[name] for name in CASES if name in done]
+    with open(kept, "w") as file:
+        json.dump(found, file, indent=1)
     reference_of = {run["name"].split()[1].rstrip(","): run for run in found if run["name"].startswith("uniform")}
     rows = []
     for run in found:

@@ -60,6 +60,7 @@ namespace Nodus
   {
     std::string  name;
     Vector3      slave_force, slave_moment, master_force, master_moment;
+    Vector3      friction; ///< part of the force on the slave
     double       contact_area = 0., maximum_pressure = 0.;
     unsigned int open = 0, slip = 0, stick = 0, unpaired = 0; ///< contact sites: nodes or integration points
     /// Status changes of the increment: all, by what contradicted the status (the four kinds), longest cycle.
