@@ -82,8 +82,10 @@ namespace Nodus
       hanging_nodes.distribute(v);
     histories.finish(*solid);
     set_nodal_state(after, true, interpolated_sites(after));
-    committed_area.clear();         // the pressures are taken over, not the forces
-    reaction                  = 0.; // nor these: nothing is being released, and what may be is found anew
+    rigid_bodies->roll_back();
+    rigid_bodies->move(committed.block(0)); // also where new nodes lie on curved surfaces
+    committed_area.clear();                 // the pressures are taken over, not the forces
+    reaction                  = 0.;         // nor these: nothing is being released, and what may be is found anew
     committed_stiffness_scale = scale;
     roll_back();
     return true;

@@ -49,6 +49,7 @@ namespace Nodus
   {
     if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 && !parameters.contact_pairs.empty())
       balance_contact(parameters.contact_pairs, *mapping, bodies);
+    rigid_bodies = std::make_unique<RigidBodies>(parameters.bodies, bodies);
     set_up_mesh();
     profile.set_ground(Phase::other);
   }
@@ -75,6 +76,11 @@ namespace Nodus
         parameters.load_stepping.viscous_stabilisation, bodies, materials, dof_handler, *mapping);
     surfaces = std::make_unique<ContactSurfaces>(parameters.contact_pairs, bodies, dof_handler, *mapping);
     surfaces->set_fixed(boundary_conditions->homogeneous_constraints());
+    rigid_bodies->find_nodes(dof_handler, *mapping);
+    std::vector<unsigned int> rigid_numbers(bodies.size(), dealii::numbers::invalid_unsigned_int);
+    for (unsigned int i = 0; i < rigid_bodies->size(); ++i)
+      rigid_numbers[rigid_bodies->body(i)] = i;
+    surfaces->set_rigid_bodies(rigid_numbers);
     // rho_n = factor E/h: the stiffness of a layer one slave face deep, of the softer material
     const std::vector<double> stiffness = pair_stiffness();
     std::vector<double>       augmentation;
@@ -153,6 +159,16 @@ namespace Nodus
         force[c] = dealii::Utilities::MPI::sum(force[c], communicator);
       reactions.emplace_back(region.name, force);
     }
+    rigid_motions.clear();
+    for (unsigned int b = 0; b < rigid_bodies->size(); ++b)
+    {
+      const RigidBodies::Components &applied = rigid_applied[b];
+      rigid_motions.push_back({rigid_bodies->name(b),
+                               rigid_bodies->translation(b),
+                               rigid_bodies->rotation(b),
+                               Vector3({applied[0], applied[1], applied[2]}),
+                               Vector3({applied[3], applied[4], applied[5]})});
+    }
   }
 
   void ContactProblem::Implementation::write(const unsigned int increment, const bool last)
@@ -160,7 +176,7 @@ namespace Nodus
     std::vector<Tables::Reaction> table;
     for (const auto &[name, force] : reactions)
       table.push_back({name, force});
-    tables->add(increment, time, resultants, table, energies, counts);
+    tables->add(increment, time, resultants, table, rigid_motions, energies, counts);
     const unsigned int interval = parameters.output.vtu_interval;
     if (vtu && (last || (interval > 0 && increment % interval == 0)))
     {
@@ -286,6 +302,11 @@ namespace Nodus
   const std::vector<std::pair<std::string, Vector3>> &ContactProblem::reactions() const
   {
     return implementation_->reactions;
+  }
+
+  const std::vector<RigidBodyMotion> &ContactProblem::rigid_bodies() const
+  {
+    return implementation_->rigid_motions;
   }
 
   const IterationCounts &ContactProblem::iterations() const

@@ -48,6 +48,10 @@ namespace Nodus
     for (const DoFIndex i : surfaces->layout().owned[0])
       if (constraints.is_constrained(i))
         forces(i) = internal(i) + contact_force(i);
+    for (unsigned int b = 0; b < rigid_bodies->size(); ++b) // what drives these counts as force and moment
+      for (const RigidBodies::Node &node : rigid_bodies->nodes(b))
+        for (unsigned int c = 0; c < dim; ++c)
+          forces(node.dof + c) = external(node.dof + c) - drag(node.dof + c);
     forces.compress(dealii::VectorOperation::insert);
     return forces;
   }
@@ -105,6 +109,9 @@ namespace Nodus
                    }
                  });
     sums[3] += solid->spring_energy(relevant_u);
+
+    if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+      sums[0] += rigid_bodies->work(rigid_applied);
 
     for (double &sum : sums)
       sum = dealii::Utilities::MPI::sum(sum, communicator);

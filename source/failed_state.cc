@@ -114,7 +114,7 @@ namespace Nodus
   /// Rigid motions that nothing holds now, by name. Collective.
   std::vector<std::string> ContactProblem::Implementation::free_motions(const OwnedNodes &nodes) const
   {
-    RigidMotions motions(bodies, dof_handler, *mapping, nodes, solution.block(0));
+    RigidMotions motions(bodies, dof_handler, *mapping, *rigid_bodies, nodes, solution.block(0));
     motions.hold_prescribed(boundary_conditions->homogeneous_constraints());
     motions.hold_springs(parameters.boundary_conditions, time);
     motions.hold_contact(*surfaces, pairing, jump, *status, state, residual);

@@ -80,6 +80,7 @@ namespace Nodus
   void ContactProblem::Implementation::solve_loops()
   {
     status->begin_increment();
+    rigid_waits = 0;
     diagnosis.begin_attempt(merged.names());
     const Newton newton(parameters.newton, merged.any() ? patience : 0);
 
@@ -262,6 +263,12 @@ namespace Nodus
       console.remark(cycle ? "the geometry loop cycles with period 2: the next pass starts half-way"
                            : "the geometry loop does not contract: the next pass starts half-way");
       solution.block(0).sadd(0.5, 0.5, u_geometry);
+      auto unknowns = rigid_bodies->unknowns();
+      for (unsigned int b = 0; b < unknowns.size(); ++b)
+        unknowns[b] = {0.5 * (unknowns[b].translation + rigid_geometry[b].translation),
+                       0.5 * (unknowns[b].rotation + rigid_geometry[b].rotation)};
+      rigid_bodies->set_unknowns(unknowns);
+      rigid_bodies->move(solution.block(0));
       gather_state();
     }
     return false;
@@ -298,6 +305,7 @@ namespace Nodus
     status->commit(slip);
     solid->commit();
     audit_energies();
+    rigid_bodies->commit(rigid_applied);
     committed                 = solution;
     committed_pairing         = pairing;
     committed_area            = weights.area();
@@ -318,6 +326,7 @@ namespace Nodus
     pairing         = committed_pairing;
     nodal_area      = committed_area;
     stiffness_scale = committed_stiffness_scale;
+    rigid_bodies->roll_back();
     status->roll_back();
     solid->roll_back();
     gather_state();

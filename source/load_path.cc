@@ -146,6 +146,7 @@ namespace Nodus
     if (boundary_conditions->set_time(t))
       surfaces->set_fixed(boundary_conditions->homogeneous_constraints());
     surfaces->move_rigid_masters(path.time(), t);
+    rigid_bodies->set_time(t);
     const auto  &constraints = boundary_conditions->homogeneous_constraints();
     const double interval_1  = parameters.load_stepping.interval_ends.front();
     stabilisation->set_increment(path.time(), t, path.interval_begin(), path.interval_end());

@@ -57,6 +57,7 @@ namespace Nodus
     gather_state();
     u_before_geometry = u_geometry;
     u_geometry        = solution.block(0);
+    rigid_geometry    = rigid_bodies->unknowns();
 
     if (!paired_before)
     {
@@ -185,6 +186,9 @@ namespace Nodus
     surfaces->gather(solution.block(0), u);
     surfaces->gather(committed.block(0), u_start);
     state.x = surfaces->positions(u);
+    state.centre.resize(rigid_bodies->size());
+    for (unsigned int b = 0; b < rigid_bodies->size(); ++b)
+      state.centre[b] = rigid_bodies->centre(b);
     state.increment.resize(u.size());
     state.prescribed.resize(u.size());
     for (unsigned int i = 0; i < u.size(); ++i)
@@ -225,6 +229,7 @@ namespace Nodus
         moved -= committed.block(0);
         drag = 0.;
         stabilisation->add(moved, constraints, system.bulk, drag);
+        drag_rigid_bodies(moved);
         external += drag;
         system.rhs.block(0) += drag;
       }
@@ -313,16 +318,18 @@ namespace Nodus
     norms.force      = scale > 0. ? out_of_balance.linfty_norm() / scale : 0.;
     norms.contact    = contact->norm(residual, length);
     norms.prescribed = prescribed.linfty_norm() / length;
+    add_rigid_norms(length, norms);
     return norms;
   }
 
   /// An iterative solver that fails leaves this correction to the direct one, if the system is not too large for that.
-  LinearSolver::Report ContactProblem::Implementation::solve_system(BlockVector &correction,
+  LinearSolver::Report ContactProblem::Implementation::solve_system(const std::vector<const BlockVector *> &rhs,
+                                                                    std::vector<BlockVector>               &corrections,
                                                                     const double relative_tolerance)
   {
     try
     {
-      return linear_solver->solve(system, correction, relative_tolerance);
+      return linear_solver->solve(system, rhs, corrections, relative_tolerance);
     }
     catch (const SolverFailure &failure)
     {
@@ -336,13 +343,21 @@ namespace Nodus
       direct_solver = make_linear_solver(LinearSolverParameters(), surfaces->layout(), {});
       direct_solver->set_profile(&profile);
     }
-    return direct_solver->solve(system, correction, relative_tolerance);
+    return direct_solver->solve(system, rhs, corrections, relative_tolerance);
   }
 
   unsigned int ContactProblem::Implementation::solve(BlockVector &correction, const double relative_tolerance)
   {
-    const auto                 timer  = profile.time(Phase::solver_iterations);
-    const LinearSolver::Report report = solve_system(correction, relative_tolerance);
+    const auto           timer = profile.time(Phase::solver_iterations);
+    LinearSolver::Report report;
+    if (rigid_bodies->size() > 0)
+      report = solve_with_rigid_bodies(correction, relative_tolerance);
+    else
+    {
+      std::vector<BlockVector> corrections;
+      report = solve_system({&system.rhs}, corrections, relative_tolerance);
+      correction.swap(corrections.front());
+    }
     if (!report.null_pivots.empty())
     {
       null_pivot = report.null_pivots.front();
@@ -363,6 +378,8 @@ namespace Nodus
   void ContactProblem::Implementation::advance(const double factor, const BlockVector &correction)
   {
     solution.add(factor, correction);
+    rigid_bodies->advance(factor, rigid_correction);
+    rigid_bodies->move(solution.block(0));
   }
 
   /// Where the first of the sites is that the ranks name. Collective; an invalid number names none.

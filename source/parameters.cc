@@ -45,25 +45,27 @@ namespace Nodus
         {AdaptivityParameters::Marking::fixed_fraction, "fixed fraction"},
         {AdaptivityParameters::Marking::target_error, "target error"}};
 
-    const Names<unsigned int> component_names = {{0, "x"}, {1, "y"}, {2, "z"}};
+    const Names<unsigned int> component_names       = {{0, "x"}, {1, "y"}, {2, "z"}};
+    const Names<unsigned int> rigid_component_names = {{0, "x"}, {1, "y"}, {2, "z"}, {3, "rx"}, {4, "ry"}, {5, "rz"}};
 
-    /// Axes x, y, z as 0, 1, 2.
+    /// Components by name, axes x, y, z as 0, 1, 2.
     void add_components(ParameterHandler          &prm,
                         const std::string         &key,
                         std::vector<unsigned int> &components,
-                        const std::string         &documentation)
+                        const std::string         &documentation,
+                        const Names<unsigned int> &names = component_names)
     {
       std::string default_text;
       for (const unsigned int c : components)
-        default_text += (default_text.empty() ? "" : ", ") + component_names[c].second;
+        default_text += (default_text.empty() ? "" : ", ") + names[c].second;
       prm.declare_entry(
-          key, default_text, Patterns::List(Patterns::Selection(selection(component_names)), 0, dim), documentation);
+          key, default_text, Patterns::List(Patterns::Selection(selection(names)), 0, names.size()), documentation);
       prm.add_action(key,
-                     [&components](const std::string &text)
+                     [&components, &names](const std::string &text)
                      {
                        components.clear();
                        for (const auto &name : dealii::Utilities::split_string_list(text, ','))
-                         components.push_back(value_of(name, component_names));
+                         components.push_back(value_of(name, names));
                      });
     }
 
@@ -181,6 +183,23 @@ namespace Nodus
                         body.rigid,
                         "Whether the body is rigid and moves as the following keys say; it has no material [-].");
       add_motion(prm, "Rigid ", body.motion, "", "the origin");
+      add_components(prm,
+                     "Rigid free",
+                     body.rigid_free,
+                     "Components of the motion of the rigid body that equilibrium finds, driven by Rigid force and "
+                     "Rigid moment [-]: translation x, y, z of the rotation centre, rotation rx, ry, rz about global "
+                     "axes through it; the others follow Rigid translation and Rigid rotation.",
+                     rigid_component_names);
+      add_expressions(prm,
+                      "Rigid force",
+                      body.rigid_force,
+                      "Force on the rigid body at time t, in global axes [force]: three expressions of t, separated by "
+                      "';'.");
+      add_expressions(prm,
+                      "Rigid moment",
+                      body.rigid_moment,
+                      "Moment on the rigid body at time t about its rotation centre as it moves, in global axes [force "
+                      "length]: three expressions of t, separated by ';'.");
       prm.enter_subsection("Material");
       add(prm, body.material);
       prm.leave_subsection();

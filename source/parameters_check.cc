@@ -1,6 +1,7 @@
 #include <nodus/parameter_checks.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <numeric>
@@ -105,6 +106,47 @@ namespace Nodus
           section.require(!given, key, "has no effect on this law; remove it or set Law = J2 plasticity");
     }
 
+    /// What drives a rigid body has an effect on its free components, what moves it on the others.
+    void check_free_motion(const Section &section, const BodyParameters &body)
+    {
+      std::array<bool, 2 * dim> free{};
+      for (const unsigned int c : body.rigid_free)
+      {
+        section.require(!free[c], "Rigid free", "names a component twice; give each one once");
+        free[c] = true;
+      }
+      const auto check_load =
+          [&](const std::string &key, const std::vector<std::string> &load, const unsigned int first)
+      {
+        section.require(load.size() == dim,
+                        key,
+                        "has " + std::to_string(load.size()) +
+                            " expressions; give three, separated by ';', for example 0; 0; -10*t");
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          check_expression(section, key, load[c], "t");
+          section.require(load[c] == "0" || free[first + c],
+                          key,
+                          "has '" + load[c] + "' along " + "xyz"[c] +
+                              ", where the motion is prescribed and the force has no effect; set it to 0, or add " +
+                              (first > 0 ? "r" : "") + "xyz"[c] + " to 'Rigid free'");
+        }
+      };
+      check_load("Rigid force", body.rigid_force, 0);
+      check_load("Rigid moment", body.rigid_moment, dim);
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        section.require(!free[c] || body.motion.translation[c] == "0",
+                        "Rigid translation",
+                        "prescribes '" + body.motion.translation[c] + "' along " + "xyz"[c] +
+                            ", which is among 'Rigid free'; set it to 0, or take it out there");
+        section.require(!free[dim + c] || body.motion.rotation == "0" || body.motion.rotation_axis[c] == 0.,
+                        "Rigid rotation",
+                        std::string("turns the body about r") + "xyz"[c] +
+                            ", which is among 'Rigid free'; remove it, or take that out there");
+      }
+    }
+
     void check(const Section &section, const BodyParameters &body)
     {
       section.require(!body.mesh_file.empty() || !body.generator.empty(),
@@ -135,10 +177,17 @@ namespace Nodus
         section.require(!is_given(body.motion),
                         "Rigid translation",
                         "and the like have no effect on a body that is not rigid; remove them, or set 'Rigid = true'");
+        const BodyParameters none;
+        section.require(body.rigid_free.empty() && body.rigid_force == none.rigid_force &&
+                            body.rigid_moment == none.rigid_moment,
+                        "Rigid free",
+                        "and Rigid force and moment have no effect on a body that is not rigid; remove them, or set "
+                        "'Rigid = true'");
         check({section.file, section.name + "/Material"}, body.material);
         return;
       }
       check(section, body.motion, "Rigid ", Vector3());
+      check_free_motion(section, body);
       section.require(body.volumetric_treatment == BodyParameters::VolumetricTreatment::standard,
                       "Volumetric treatment",
                       "has no effect on a rigid body; remove it");

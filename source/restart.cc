@@ -30,14 +30,15 @@ namespace Nodus
       LoadStepping                       path{LoadSteppingParameters()};
       double                             stiffness_scale = 0.;
       Energies                           energies;
+      std::vector<RigidBodies::State>    rigid_bodies;
       Tables::Rows                       rows;
       VtuOutput::Series                  series;
 
       template <typename Archive>
       void serialize(Archive &archive, const unsigned int)
       {
-        archive &model &path &stiffness_scale &energies &rows.contact &rows.reactions &rows.energies &rows
-            .iterations                                                                              &series;
+        archive &model &path &stiffness_scale &energies &rigid_bodies &series;
+        archive &rows.contact &rows.reactions &rows.energies &rows.iterations &rows.rigid_bodies;
       }
     };
 
@@ -303,7 +304,8 @@ namespace Nodus
   void ContactProblem::Implementation::write_checkpoint()
   {
     const auto timer = profile.time(Phase::output);
-    Common     common{model_of(parameters), path, committed_stiffness_scale, energies, tables->rows(), {}};
+    Common     common{
+        model_of(parameters), path, committed_stiffness_scale, energies, rigid_bodies->committed(), tables->rows(), {}};
     if (vtu)
       common.series = vtu->series();
 
@@ -370,6 +372,7 @@ namespace Nodus
     path.continue_from(common.path);
     committed_stiffness_scale = common.stiffness_scale;
     energies                  = common.energies;
+    rigid_bodies->restore(common.rigid_bodies);
     tables->continue_from(common.rows);
     if (vtu)
       vtu->continue_from(common.series);

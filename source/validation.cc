@@ -196,7 +196,12 @@ namespace Nodus
            << " x " << size[1] << " x " << size[2] << " from " << coordinates(ends.first) << " to "
            << coordinates(ends.second) << ", boundary ids " << joined(p.bodies.boundary_ids(b), ", ") << "; ";
       if (parameters.bodies[b].rigid)
+      {
         text << "rigid";
+        for (const unsigned int c : parameters.bodies[b].rigid_free)
+          text << (c == parameters.bodies[b].rigid_free.front() ? ", free to " : ", ")
+               << (c < dim ? "move along " : "turn about ") << "xyz"[c % dim];
+      }
       else
         text << text_of(material.law) << ", E = " << material.youngs_modulus << ", nu = " << material.poissons_ratio;
       p.console.line(text.str());

@@ -45,9 +45,11 @@ namespace Nodus
     /// whoever asks.
     const std::vector<ContactFields>     &contact_fields() const;
     const std::vector<ContactResultants> &contact_resultants() const;
-    const std::vector<std::pair<std::string, Vector3>>                        &
+    const std::vector<std::pair<std::string, Vector3>> &
     reactions() const; ///< by displacement condition: ground on bodies
-    const IterationCounts &iterations() const;
+    /// Of those with free components, at the last converged increment.
+    const std::vector<RigidBodyMotion> &rigid_bodies() const;
+    const IterationCounts              &iterations() const;
     /// Displacement of the node of body @p body (number, from 1) at reference position @p X. Collective; throws
     /// InputError without one.
     Vector3 displacement(unsigned int body, const Point &X) const;

@@ -10,6 +10,7 @@
 #include <nodus/contact_problem.h>
 #include <nodus/mesh/bodies.h>
 #include <nodus/mesh/refinement.h>
+#include <nodus/mesh/rigid_bodies.h>
 #include <nodus/output/checkpoint.h>
 #include <nodus/output/console.h>
 #include <nodus/output/diagnosis.h>
@@ -46,7 +47,8 @@ namespace Nodus
 
   /// Everything a run owns. contact_problem.cc builds it and reports, load_path.cc goes from increment to increment,
   /// load_increment.cc holds the three nested loops, newton_iterate.cc what Newton sees, restart.cc the checkpoints,
-  /// failed_state.cc what is kept of an increment that fails, adapt.cc changes the mesh.
+  /// failed_state.cc what is kept of an increment that fails, adapt.cc changes the mesh, rigid_motion.cc lets forces
+  /// drive rigid bodies.
   struct ContactProblem::Implementation : public NewtonProblem
   {
     Implementation(const Parameters &parameters, MPI_Comm communicator, std::ostream &log);
@@ -68,7 +70,10 @@ namespace Nodus
     bool           statuses_converged(FixedPointLoop &loop);
     Status::Update update_statuses(bool closing_only = false);
 
-    LinearSolver::Report solve_system(BlockVector &correction, double relative_tolerance);
+    LinearSolver::Report solve_system(const std::vector<const BlockVector *> &rhs,
+                                      std::vector<BlockVector>               &corrections,
+                                      double                                  relative_tolerance);
+    LinearSolver::Report solve_with_rigid_bodies(BlockVector &correction, double relative_tolerance);
 
     // Newton's view of it.
     Norms        assemble() override;
@@ -76,6 +81,11 @@ namespace Nodus
     void         advance(double factor, const BlockVector &correction) override;
 
     Norms                    assemble_contact(const dealii::AffineConstraints<double> &constraints);
+    void                     add_rigid_nodes();
+    void                     drag_rigid_bodies(const Vector &moved);
+    void                     add_rigid_norms(double length, Norms &norms);
+    bool                     may_wait_for_friction(double force) const;
+    std::string              describe_rigid_motion(const std::vector<double> &motion) const;
     void                     follow_pressure();
     void                     freeze_threshold();
     void                     update_slip_rates();
@@ -141,6 +151,7 @@ namespace Nodus
     dealii::DoFHandler<dim>                     dof_handler;
     dealii::IndexSet                            relevant;
     std::vector<std::unique_ptr<Material>>      materials;
+    std::unique_ptr<RigidBodies>                rigid_bodies; ///< those that forces drive
     std::unique_ptr<BoundaryConditions>         boundary_conditions;
     std::unique_ptr<SolidAssembler>             solid;
 
@@ -161,6 +172,11 @@ namespace Nodus
     Vector                        relevant_u, internal, external, contact_force;
     double                        stiffness_scale = 0.; ///< largest diagonal entry of the first bulk tangent
     double                        length_scale; ///< displacements are measured against this when the step moves nothing
+
+    std::vector<double>                  rigid_correction; ///< of driven rigid bodies, the last one
+    unsigned int                         rigid_waits = 0;  ///< corrections in which some wait for friction
+    std::vector<RigidBodies::Components> rigid_applied;    ///< what these resist with, all ranks
+    std::vector<RigidBodies::Unknowns>   rigid_geometry;   ///< at the last pairing
 
     double committed_stiffness_scale = 0.;
     Vector reaction; ///< of what was prescribed when the last interval ended; what is released sheds it
@@ -196,6 +212,7 @@ namespace Nodus
     std::vector<ContactFields>                   whole_fields; ///< of all ranks, once somebody asked for them
     std::vector<ContactResultants>               resultants;
     std::vector<std::pair<std::string, Vector3>> reactions;
+    std::vector<RigidBodyMotion>                 rigid_motions;
     std::function<void(unsigned int, double)>    callback;
     std::unique_ptr<VtuOutput>                   vtu;
     std::unique_ptr<Tables>                      tables;

@@ -109,7 +109,10 @@ namespace Nodus
     MaterialParameters        material; ///< of a body that is not rigid
 
     bool                       rigid = false;
-    PrescribedMotionParameters motion; ///< of a rigid body; keys "Rigid translation", ...
+    PrescribedMotionParameters motion;     ///< of a rigid body; keys "Rigid translation", ...
+    std::vector<unsigned int>  rigid_free; ///< components that force and moment drive: 0-2 translation, 3-5 rotation
+    std::vector<std::string>   rigid_force  = {"0", "0", "0"}; ///< muParser expressions of t [force]
+    std::vector<std::string>   rigid_moment = {"0", "0", "0"}; ///< about the centre as it moves [force length]
   };
 
   struct BoundaryConditionParameters

@@ -126,9 +126,11 @@ namespace Nodus
   {
     for (unsigned int n = 0; n < parameters_.size(); ++n)
       functions_.push_back(parse(parameters_[n], label(n)));
+    driven_.assign(bodies.size(), false);
     for (unsigned int b = 0; b < body_parameters.size(); ++b)
       if (body_parameters[b].rigid)
       {
+        driven_[b] = !body_parameters[b].rigid_free.empty();
         BoundaryConditionParameters condition;
         condition.name        = bodies.name(b);
         condition.region.body = b + 1;
@@ -178,9 +180,16 @@ namespace Nodus
     return "Boundary condition " + std::to_string(condition + 1) + (name.empty() ? "" : " ('" + name + "')");
   }
 
+  /// The condition is the motion of a rigid body with free components.
+  bool BoundaryConditions::is_driven(const unsigned int condition) const
+  {
+    return condition >= n_given_ && driven_[parameters_[condition].region.body - 1];
+  }
+
   void BoundaryConditions::add_loads()
   {
     std::vector<unsigned int> found(parameters_.size(), 0);
+    std::string               error;
     for (unsigned int n = 0; n < parameters_.size(); ++n)
       if (parameters_[n].type != Type::displacement)
       {
@@ -196,10 +205,19 @@ namespace Nodus
               found[n] += load.region.selects_cell(mapping_, cell);
             else
               for (const auto face : cell->face_indices())
-                found[n] += load.region.selects_face(mapping_, cell, face);
+                if (load.region.selects_face(mapping_, cell, face))
+                {
+                  ++found[n];
+                  if (driven_[cell->material_id()] && parameters_[n].type != Type::traction)
+                    error = label(n) + ": a " + (parameters_[n].type == Type::pressure ? "pressure" : "spring") +
+                            " acts on body " + std::to_string(cell->material_id() + 1) +
+                            ", which is rigid with free components; take the body out of the region and use 'Rigid "
+                            "force' and 'Rigid moment', or a traction";
+                }
           }
         loads_.push_back(std::move(load));
       }
+    throw_everywhere<InputError>(error, dof_handler_.get_communicator());
     Utilities::MPI::max(found, dof_handler_.get_communicator(), found);
     for (const auto &load : loads_)
     {
@@ -225,6 +243,13 @@ namespace Nodus
       const Held &first   = new_one.first->second;
       if (!error.empty() || (!new_one.second && first.condition == n && first.entry == e))
         return;
+      if (!new_one.second && (is_driven(n) || is_driven(first.condition)))
+      {
+        error = label(is_driven(n) ? first.condition : n) + " holds nodes of " +
+                label(is_driven(n) ? n : first.condition) +
+                ", whose motion is in part free; hold it by taking components out of its 'Rigid free'";
+        return;
+      }
       const auto values   = history(*functions_[n], X, e, stage.begin, stage.end);
       const auto position = at(X, parameters_[n].components[e]);
       if (!std::isfinite(values[0] + values[1] + values[2]))
@@ -352,7 +377,8 @@ namespace Nodus
     // from the unresolved lines: close() passes the inhomogeneities on to hanging nodes
     increment_.copy_from(lines_);
     for (const auto &one : prescribed_)
-      increment_.set_inhomogeneity(one.dof, one.value - u(one.dof));
+      if (!is_driven(one.condition))
+        increment_.set_inhomogeneity(one.dof, one.value - u(one.dof));
     increment_.close();
     return increment_;
   }

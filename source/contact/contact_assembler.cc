@@ -119,6 +119,20 @@ namespace Nodus
     return derivative;
   }
 
+  std::vector<ContactAssembler::RigidShare> ContactAssembler::rigid_shares(const ContactState &state) const
+  {
+    std::vector<RigidShare> shares(surfaces_.layout().n_rigid > 0 ? surfaces_.n_sites() : 0);
+    for (unsigned int s = 0; s < shares.size(); ++s)
+      for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
+        if (const unsigned int body = surfaces_.rigid_body(e->node); body != dealii::numbers::invalid_unsigned_int)
+        {
+          shares[s].body = body; // slave and master are not both rigid
+          shares[s].weight += e->weight;
+          shares[s].arm += e->weight * (state.x[e->node] - state.centre[body]);
+        }
+    return shares;
+  }
+
   ContactResidual
   ContactAssembler::assemble(const ContactState &state, LinearSystem &system, const bool linearise_threshold) const
   {
@@ -128,8 +142,11 @@ namespace Nodus
     const unsigned int n_sites = surfaces_.n_sites();
     system.contact.clear();
     system.variation.clear();
-    const bool unsymmetric = linearise_threshold && status_.threshold_follows_pressure();
-    system.symmetric       = !unsymmetric;
+    system.border.clear();
+    system.border_rhs.assign(2 * dim * layout.n_rigid, 0.);
+    const std::vector<RigidShare> shares      = rigid_shares(state);
+    const bool                    unsymmetric = linearise_threshold && status_.threshold_follows_pressure();
+    system.symmetric                          = !unsymmetric;
     const auto d_threshold =
         unsymmetric ? threshold_derivative() : std::vector<std::vector<std::pair<unsigned int, double>>>();
 
@@ -301,7 +318,8 @@ namespace Nodus
         }
       }
 
-      // Expand the jumps to displacements, free components only: rows and columns of prescribed ones drop out.
+      // Expand the jumps to displacements, free components only: rows and columns of prescribed ones drop out. Driven
+      // rigid bodies stand in the border.
       const auto for_each_unknown = [&](const unsigned int local, const auto &f)
       {
         if (local >= first)
@@ -315,17 +333,21 @@ namespace Nodus
         for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
           if (!surfaces_.fixed(e->node, l))
             f(surfaces_.nodes()[e->node].dofs[l], e->weight);
+        if (!shares.empty() && shares[s].weight != 0.)
+          surfaces_.for_each_rigid_unknown(shares[s].body, l, shares[s].weight, shares[s].arm, f);
       };
+      const auto add = [&](TripletMatrix &inner, const DoFIndex row, const DoFIndex column, const double value)
+      { (row < layout.size() && column < layout.size() ? inner : system.border).add(row, column, value); };
       for (unsigned int i = 0; i < n_unknowns; ++i)
         for (unsigned int j = 0; j < n_unknowns; ++j)
           if (A(i, j) != 0.)
             for_each_unknown(i,
                              [&](const DoFIndex row, const double row_weight)
                              {
-                               for_each_unknown(j,
-                                                [&](const DoFIndex column, const double column_weight) {
-                                                  system.contact.add(row, column, row_weight * column_weight * A(i, j));
-                                                });
+                               for_each_unknown(
+                                   j,
+                                   [&](const DoFIndex column, const double column_weight)
+                                   { add(system.contact, row, column, row_weight * column_weight * A(i, j)); });
                              });
       if (unsymmetric)
         for (const PointJump &jump : jumps)
@@ -335,9 +357,10 @@ namespace Nodus
                 if (r_t(i) != 0.)
                   for_each_unknown(i,
                                    [&](const DoFIndex row, const double weight) {
-                                     system.variation.add(row,
-                                                          layout.lambda(surfaces_.multiplier(k)),
-                                                          weight * r_t(i) * jump.contact * derivative);
+                                     add(system.variation,
+                                         row,
+                                         layout.lambda(surfaces_.multiplier(k)),
+                                         weight * r_t(i) * jump.contact * derivative);
                                    });
     }
 
@@ -357,6 +380,17 @@ namespace Nodus
           if (jump_rhs[3 * s + c] != 0. && !surfaces_.fixed(e->node, c))
             system.rhs.block(0)(surfaces_.nodes()[e->node].dofs[c]) += e->weight * jump_rhs[3 * s + c];
     system.rhs.compress(dealii::VectorOperation::add);
+    const auto add_resultant = [&](std::vector<double> &sum, const RigidShare &share, const Vector3 &force)
+    {
+      const Vector3 moment = dealii::cross_product_3d(share.arm, force);
+      for (unsigned int c = 0; c < dim && share.weight != 0.; ++c)
+      {
+        sum[2 * dim * share.body + c] += share.weight * force[c];
+        sum[2 * dim * share.body + dim + c] += moment[c];
+      }
+    };
+    for (unsigned int s = 0; s < shares.size(); ++s)
+      add_resultant(system.border_rhs, shares[s], Vector3({jump_rhs[3 * s], jump_rhs[3 * s + 1], jump_rhs[3 * s + 2]}));
 
     surfaces_.site_exchange().sum(jump_residual, 3);
     surfaces_.slave_exchange().sum(law_residual, 4);
@@ -365,6 +399,13 @@ namespace Nodus
     for (unsigned int s = 0; s < n_sites; ++s)
       for (unsigned int c = 0; c < dim; ++c)
         result.jump[s][c] = jump_residual[3 * s + c];
+    result.rigid.assign(2 * dim * layout.n_rigid, 0.);
+    for (unsigned int s = 0; s < shares.size(); ++s)
+      if (surfaces_.is_owned(s) && shares[s].weight != 0.)
+      {
+        add_resultant(result.rigid, shares[s], result.jump[s]);
+        add_turn(layout, shares[s].body, shares[s].arm, result.jump[s], system.border);
+      }
     for (unsigned int k = 0; k < n; ++k)
     {
       const double *const row = law_residual.data() + 4 * k;

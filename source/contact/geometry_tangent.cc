@@ -369,22 +369,58 @@ namespace Nodus
     const auto         &nodes  = surfaces_.nodes();
     const std::uint64_t size   = nodes.size();
     system.variation.reserve(system.variation.row.size() + dim * dim * sum.force.size() + dim * sum.gap.size());
+    const auto is_inner = [&](const DoFIndex index) { return index < layout.size(); };
+    const auto is_rigid = [&](const unsigned int node)
+    { return surfaces_.rigid_body(node) != dealii::numbers::invalid_unsigned_int; };
     const auto add_force = [&](const unsigned int row, const unsigned int column, const Matrix3 &value)
     {
       for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim && !surfaces_.fixed(row, i); ++j)
-          if (surfaces_.fixed(column, j))
-            system.rhs.block(0)(nodes[row].dofs[i]) -= value[i][j] * state.prescribed[column][j];
-          else
-            system.variation.add(nodes[row].dofs[i], nodes[column].dofs[j], value[i][j]);
+        surfaces_.for_each_unknown(row,
+                                   i,
+                                   state.x[row],
+                                   state.centre,
+                                   [&](const DoFIndex row_index, const double row_part)
+                                   {
+                                     for (unsigned int j = 0; j < dim; ++j)
+                                     {
+                                       if (surfaces_.fixed(column, j) && !is_rigid(column))
+                                       {
+                                         const double missing = row_part * value[i][j] * state.prescribed[column][j];
+                                         if (is_inner(row_index))
+                                           system.rhs.block(0)(row_index) -= missing;
+                                         else
+                                           system.border_rhs[row_index - layout.size()] -= missing;
+                                       }
+                                       surfaces_.for_each_unknown(
+                                           column,
+                                           j,
+                                           state.x[column],
+                                           state.centre,
+                                           [&](const DoFIndex column_index, const double part)
+                                           {
+                                             (is_inner(row_index) && is_inner(column_index) ? system.variation
+                                                                                            : system.border)
+                                                 .add(row_index, column_index, row_part * part * value[i][j]);
+                                           });
+                                     }
+                                   });
     };
     const auto add_gap = [&](const DoFIndex multiplier, const unsigned int column, const Vector3 &value)
     {
       for (unsigned int j = 0; j < dim; ++j)
-        if (surfaces_.fixed(column, j))
+      {
+        if (surfaces_.fixed(column, j) && !is_rigid(column))
           system.rhs.block(1)(multiplier) -= value[j] * state.prescribed[column][j];
         else if (value[j] != 0.)
-          system.variation.add(layout.lambda(multiplier), nodes[column].dofs[j], value[j]);
+          surfaces_.for_each_unknown(column,
+                                     j,
+                                     state.x[column],
+                                     state.centre,
+                                     [&](const DoFIndex index, const double part) {
+                                       (is_inner(index) ? system.variation : system.border)
+                                           .add(layout.lambda(multiplier), index, part * value[j]);
+                                     });
+      }
     };
     for (const auto &[key, value] : sum.force)
       surfaces_.expand(key / size,

@@ -56,11 +56,13 @@ namespace Nodus
   RigidMotions::RigidMotions(const Bodies                  &bodies,
                              const dealii::DoFHandler<dim> &dof_handler,
                              const dealii::Mapping<dim>    &mapping,
+                             const RigidBodies             &rigid_bodies,
                              const OwnedNodes              &nodes,
                              const Vector                  &u)
       : bodies_(bodies)
       , dof_handler_(dof_handler)
       , mapping_(mapping)
+      , rigid_bodies_(rigid_bodies)
       , nodes_(nodes)
       , x_(nodes.X)
       , row_(Eigen::VectorXd::Zero(2 * dim * bodies.size()))
@@ -75,6 +77,8 @@ namespace Nodus
       centre_.push_back(ends.first + 0.5 * (ends.second - ends.first));
       size_.push_back(0.5 * ends.first.distance(ends.second));
     }
+    for (unsigned int i = 0; i < rigid_bodies.size(); ++i)
+      centre_[rigid_bodies.body(i)] = rigid_bodies.centre(i);
   }
 
   void RigidMotions::take(const unsigned int body, const Point &x, const Vector3 &direction)
@@ -104,8 +108,22 @@ namespace Nodus
 
   void RigidMotions::hold_prescribed(const dealii::AffineConstraints<double> &constraints)
   {
-    for (const DoFIndex dof : dof_handler_.locally_owned_dofs())
-      if (is_prescribed(constraints, dof))
+    const bool        first_rank = dealii::Utilities::MPI::this_mpi_process(dof_handler_.get_communicator()) == 0;
+    std::vector<bool> driven(bodies_.size(), false);
+    for (unsigned int i = 0; i < rigid_bodies_.size(); ++i)
+    {
+      const unsigned int body = rigid_bodies_.body(i);
+      driven[body]            = true;
+      for (unsigned int c = 0; c < RigidBodies::n_components && first_rank; ++c)
+        if (!rigid_bodies_.is_free(i, c))
+        {
+          row_[2 * dim * body + c] = 1.;
+          hold();
+        }
+    }
+    const dealii::IndexSet &owned = dof_handler_.locally_owned_dofs();
+    for (const DoFIndex dof : owned)
+      if (is_prescribed(constraints, dof) && !driven[nodes_.body[owned.index_within_set(dof) / dim]])
         hold(dof);
   }
 

@@ -440,6 +440,35 @@ namespace Nodus
     for (unsigned int i = 0; i < nodes_.size(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
         fixed_[i][c] = nodal[i][c] > 0.5;
+    find_rigid_nodes();
+  }
+
+  void ContactSurfaces::set_rigid_bodies(const std::vector<unsigned int> &numbers)
+  {
+    rigid_number_   = numbers;
+    layout_.n_rigid = std::count_if(
+        numbers.begin(), numbers.end(), [](const auto n) { return n != dealii::numbers::invalid_unsigned_int; });
+    find_rigid_nodes();
+  }
+
+  void ContactSurfaces::find_rigid_nodes()
+  {
+    if (layout_.n_rigid == 0)
+      return;
+    rigid_body_.assign(nodes_.size(), dealii::numbers::invalid_unsigned_int);
+    const auto take = [&](const std::vector<SurfaceFace> &faces, const unsigned int body)
+    {
+      const unsigned int number = rigid_number_[body - 1];
+      for (const SurfaceFace &face : faces)
+        for (const unsigned int node : face.nodes)
+          expand(node, 1., [&](const unsigned int free_node, double) { rigid_body_[free_node] = number; });
+    };
+    for (unsigned int p = 0; p < pairs_.size(); ++p)
+    {
+      take(slave_faces_[p], pairs_[p].slave.body);
+      if (!rigid_masters_[p])
+        take(master_faces_[p], pairs_[p].master.body);
+    }
   }
 
   std::vector<Point> ContactSurfaces::positions(const std::vector<Vector3> &u) const

@@ -31,34 +31,59 @@ namespace Nodus
     function_ = std::move(function);
   }
 
-  Placement PrescribedMotion::at(const double t) const
+  std::array<double, dim + 1> PrescribedMotion::values(const double t) const
   {
-    Placement    placement;
-    Vector3      translation;
-    const double degrees = function_->value(dealii::Point<1>(t), dim);
-    double       sum     = degrees;
-    for (unsigned int c = 0; c < dim; ++c)
-      sum += translation[c] = function_->value(dealii::Point<1>(t), c);
+    std::array<double, dim + 1> value;
+    double                      sum = 0.;
+    Vector3                     translation;
+    for (unsigned int c = 0; c <= dim; ++c)
+    {
+      sum += value[c] = function_->value(dealii::Point<1>(t), c);
+      if (c < dim)
+        translation[c] = value[c];
+    }
     if (!std::isfinite(sum))
     {
       std::ostringstream message;
-      message << label_ << ": translation (" << translation << ") and rotation " << degrees << " at t = " << t
+      message << label_ << ": translation (" << translation << ") and rotation " << value[dim] << " at t = " << t
               << " are not numbers; correct the expressions";
       throw InputError(message.str());
     }
+    return value;
+  }
 
-    // Rodrigues' formula
-    const double angle = degrees * dealii::numbers::PI / 180., sine = std::sin(angle);
-    const double rest = 2. * std::sin(0.5 * angle) * std::sin(0.5 * angle); // 1 - cos
-    placement.R       = rest * dealii::outer_product(axis_, axis_);
+  Vector3 PrescribedMotion::translation(const double t) const
+  {
+    const auto value = values(t);
+    return Vector3({value[0], value[1], value[2]});
+  }
+
+  Vector3 PrescribedMotion::rotation(const double t) const
+  {
+    return values(t)[dim] * dealii::numbers::PI / 180. * axis_;
+  }
+
+  Placement PrescribedMotion::at(const double t) const
+  {
+    Placement placement;
+    placement.R = rotation_by(rotation(t));
+    placement.s = centre_ - placement.R * centre_ + translation(t);
+    return placement;
+  }
+
+  dealii::Tensor<2, dim> rotation_by(const Vector3 &vector)
+  {
+    const double           angle = vector.norm(), sine = std::sin(angle);
+    const double           rest = 2. * std::sin(0.5 * angle) * std::sin(0.5 * angle); // 1 - cos
+    const Vector3          axis = angle > 0. ? vector / angle : Vector3();
+    dealii::Tensor<2, dim> R    = rest * dealii::outer_product(axis, axis);
     for (unsigned int c = 0; c < dim; ++c)
     {
       const unsigned int i = (c + 1) % dim, j = (c + 2) % dim;
-      placement.R[c][c] += 1. - rest;
-      placement.R[j][i] += sine * axis_[c];
-      placement.R[i][j] -= sine * axis_[c];
+      R[c][c] += 1. - rest;
+      R[j][i] += sine * axis[c];
+      R[i][j] -= sine * axis[c];
     }
-    placement.s = centre_ - placement.R * centre_ + translation;
-    return placement;
+    return R;
   }
 } // namespace Nodus

@@ -2,6 +2,7 @@
 #include <nodus/output/tables.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/numbers.h>
 
 #include <cmath>
 #include <sstream>
@@ -24,6 +25,11 @@ namespace Nodus
                                     "longest status cycle,fallbacks\n";
 
     constexpr auto reaction_header = "increment,time,condition,force x [force],force y [force],force z [force]\n";
+
+    constexpr auto rigid_body_header = "increment,time,body,translation x [length],translation y [length],"
+                                       "translation z [length],rotation x [degrees],rotation y [degrees],"
+                                       "rotation z [degrees],force x [force],force y [force],force z [force],"
+                                       "moment x [force length],moment y [force length],moment z [force length]\n";
 
     constexpr auto energy_header = "increment,time,external work [energy],released work [energy],contact work [energy],"
                                    "stored energy [energy],frictional dissipation [energy],"
@@ -61,7 +67,7 @@ namespace Nodus
   Tables::Tables(const std::string &folder, MPI_Comm communicator)
       : folder_(folder)
       , communicator_(communicator)
-      , rows_{contact_header, reaction_header, energy_header, iteration_header}
+      , rows_{contact_header, reaction_header, energy_header, iteration_header, ""}
   {
     make_results_folder(folder, communicator);
   }
@@ -70,6 +76,7 @@ namespace Nodus
                    const double                          t,
                    const std::vector<ContactResultants> &contact,
                    const std::vector<Reaction>          &reactions,
+                   const std::vector<RigidBodyMotion>   &rigid_bodies,
                    const Energies                       &energies,
                    const IterationCounts                &counts)
   {
@@ -98,6 +105,18 @@ namespace Nodus
     }
     rows_.reactions += reaction_rows.str();
 
+    auto rigid_rows = row();
+    for (const RigidBodyMotion &body : rigid_bodies)
+    {
+      rigid_rows << increment << ',' << t << ',' << quoted(body.name);
+      for (const Vector3 &v : {body.translation, 180. / dealii::numbers::PI * body.rotation, body.force, body.moment})
+        print(rigid_rows, v);
+      rigid_rows << '\n';
+    }
+    if (rows_.rigid_bodies.empty() && !rigid_bodies.empty())
+      rows_.rigid_bodies = rigid_body_header;
+    rows_.rigid_bodies += rigid_rows.str();
+
     auto         energy_row = row();
     const double imbalance  = energies.imbalance();
     energy_row << increment << ',' << t << ',' << energies.external << ',' << energies.released << ','
@@ -119,9 +138,11 @@ namespace Nodus
   {
     for (const auto &[name, rows] : {std::pair<const char *, const std::string *>{"contact.csv", &rows_.contact},
                                      {"reactions.csv", &rows_.reactions},
+                                     {"rigid_bodies.csv", &rows_.rigid_bodies},
                                      {"energy.csv", &rows_.energies},
                                      {"convergence.csv", &rows_.iterations}})
-      write(name, *rows);
+      if (!rows->empty())
+        write(name, *rows);
   }
 
   void Tables::write(const std::string &name, const std::string &rows) const

@@ -115,11 +115,12 @@ namespace Nodus
 
   unsigned int CondensedSolver::gmres(const SaddlePointOperator &matrix,
                                       Condensation              &condensation,
+                                      const BlockVector         &b,
                                       const double               tolerance,
                                       BlockVector               &x) const
   {
-    const KrylovReport report = left_gmres(
-        matrix, CondensedCycle(condensation, *multigrid_), matrix.rhs(), tolerance, parameters_.maximum_iterations, x);
+    const KrylovReport report =
+        left_gmres(matrix, CondensedCycle(condensation, *multigrid_), b, tolerance, parameters_.maximum_iterations, x);
     if (!(report.residual <= tolerance))
       fail(report.residual, report.iterations, tolerance);
     return report.iterations;
@@ -127,14 +128,14 @@ namespace Nodus
 
   unsigned int CondensedSolver::iterate(const SaddlePointOperator &matrix,
                                         Condensation              &condensation,
+                                        const BlockVector         &b,
                                         const double               tolerance,
                                         BlockVector               &x) const
   {
     x = 0.;
     if (!matrix.symmetric())
-      return gmres(matrix, condensation, tolerance, x);
-    const BlockVector b = matrix.rhs();
-    Vector            rhs, y;
+      return gmres(matrix, condensation, b, tolerance, x);
+    Vector rhs, y;
     condensation.condense(b, rhs);
     y.reinit(rhs);
     const unsigned int n = rhs.l2_norm() > 0. ? conjugate_gradients(condensation, rhs, tolerance, y) : 0;
@@ -142,8 +143,10 @@ namespace Nodus
     return n;
   }
 
-  LinearSolver::Report
-  CondensedSolver::solve(const LinearSystem &system, BlockVector &solution, const double relative_tolerance)
+  LinearSolver::Report CondensedSolver::solve(const LinearSystem                     &system,
+                                              const std::vector<const BlockVector *> &rhs,
+                                              std::vector<BlockVector>               &solutions,
+                                              const double                            relative_tolerance)
   {
     const double                  tolerance = std::max(parameters_.tolerance, relative_tolerance);
     const SaddlePointOperator     matrix(system);
@@ -157,42 +160,53 @@ namespace Nodus
     {
       BlockSolver block_solver(parameters_, node_positions_);
       block_solver.set_profile(profile_);
-      return block_solver.solve(system, solution, relative_tolerance);
+      return block_solver.solve(system, rhs, solutions, relative_tolerance);
     }
-    const BlockVector b = matrix.rhs();
-    BlockVector       x, r;
-    x.reinit(b);
-    r.reinit(b);
-    const double norm_b = b.l2_norm();
-    if (!std::isfinite(norm_b))
-      throw SolverFailure("Condensed solver: the right-hand side holds a value that is not finite.",
-                          SolverFailure::Kind::not_finite);
-
+    solutions.resize(rhs.size());
     Report report;
-    if (norm_b > 0.)
+    bool   first = true; // of those that are not zero
+    for (unsigned int n = 0; n < rhs.size(); ++n)
     {
-      const bool reuse = hierarchy_fits(condensation->signature(), system.layout->communicator);
-      if (!reuse)
-        make_multigrid(system, *condensation);
-      try
+      const BlockVector b = matrix.scaled(*rhs[n]);
+      BlockVector       x, r;
+      x.reinit(b);
+      r.reinit(b);
+      const double norm_b = b.l2_norm();
+      if (!std::isfinite(norm_b))
+        throw SolverFailure("Condensed solver: the right-hand side holds a value that is not finite.",
+                            SolverFailure::Kind::not_finite);
+      if (norm_b > 0.)
       {
-        report.iterations = iterate(matrix, *condensation, tolerance, x);
-      }
-      catch (const SolverFailure &)
-      {
+        const bool reuse = !first || hierarchy_fits(condensation->signature(), system.layout->communicator);
         if (!reuse)
-          throw;
-        make_multigrid(system, *condensation);
-        report.iterations = iterate(matrix, *condensation, tolerance, x);
+          make_multigrid(system, *condensation);
+        unsigned int iterations;
+        try
+        {
+          iterations = iterate(matrix, *condensation, b, tolerance, x);
+        }
+        catch (const SolverFailure &)
+        {
+          if (!reuse)
+            throw;
+          make_multigrid(system, *condensation);
+          iterations = iterate(matrix, *condensation, b, tolerance, x);
+        }
+        report.iterations += iterations;
+        if (first)
+        {
+          last_iterations_ = iterations / -std::log10(std::min(tolerance, 0.1));
+          if (first_iterations_ == 0.)
+            first_iterations_ = last_iterations_;
+        }
+        first = false;
+        matrix.vmult(r, x);
+        r.sadd(-1., 1., b);
+        if (n == 0)
+          report.relative_residual = matrix.unscaled_norm(r) / matrix.unscaled_norm(b);
       }
-      last_iterations_ = report.iterations / -std::log10(std::min(tolerance, 0.1));
-      if (first_iterations_ == 0.)
-        first_iterations_ = last_iterations_;
-      matrix.vmult(r, x);
-      r.sadd(-1., 1., b);
-      report.relative_residual = matrix.unscaled_norm(r) / matrix.unscaled_norm(b);
+      matrix.to_solution(x, solutions[n]);
     }
-    matrix.to_solution(x, solution);
     return report;
   }
 } // namespace Nodus

@@ -266,7 +266,10 @@ namespace Nodus
     return r;
   }
 
-  LinearSolver::Report DirectSolver::solve(const LinearSystem &system, BlockVector &solution, double)
+  LinearSolver::Report DirectSolver::solve(const LinearSystem                     &system,
+                                           const std::vector<const BlockVector *> &rhs,
+                                           std::vector<BlockVector>               &solutions,
+                                           double)
   {
     const BlockLayout &layout = *system.layout;
     if (layout.size() >= static_cast<DoFIndex>(std::numeric_limits<int>::max()))
@@ -283,6 +286,33 @@ namespace Nodus
     const bool                changed = collect_entries(system, scale);
     factorise(changed || !same_size);
 
+    Report report;
+    solutions.resize(rhs.size());
+    for (unsigned int n = 0; n < rhs.size(); ++n)
+    {
+      const double relative_residual = substitute(layout, scale, *rhs[n], solutions[n]);
+      if (n == 0)
+        report.relative_residual = relative_residual;
+    }
+
+    DMUMPS_STRUC_C &mumps = instance_->mumps;
+    if (symmetric_)
+      report.negative_pivots = infog(mumps, 12);
+    std::vector<int> null_pivots(infog(mumps, 28));
+    if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
+      std::copy_n(mumps.pivnul_list, null_pivots.size(), null_pivots.begin());
+    MPI_Bcast(null_pivots.data(), static_cast<int>(null_pivots.size()), MPI_INT, 0, communicator_);
+    for (const int i : null_pivots)
+      report.null_pivots.push_back(i - 1);
+    std::sort(report.null_pivots.begin(), report.null_pivots.end());
+    return report;
+  }
+
+  double DirectSolver::substitute(const BlockLayout         &layout,
+                                  const std::vector<double> &scale,
+                                  const BlockVector         &rhs,
+                                  BlockVector               &solution)
+  {
     // Multipliers follow u in the flat numbering, in the order of the blocks.
     const std::array<DoFIndex, 3> offset = {{0, layout.n_u, layout.n_u + layout.n_slave_nodes}};
     const auto scale_of = [&](const DoFIndex flat) { return flat < layout.n_u ? 1. : scale[flat - layout.n_u]; };
@@ -290,7 +320,7 @@ namespace Nodus
     std::vector<double> b(size_, 0.);
     for (unsigned int block = 0; block < 3; ++block)
       for (const DoFIndex i : layout.owned[block])
-        b[offset[block] + i] = scale_of(offset[block] + i) * system.rhs.block(block)(i);
+        b[offset[block] + i] = scale_of(offset[block] + i) * rhs.block(block)(i);
     dealii::Utilities::MPI::sum(b, communicator_, b);
     const double norm_b = norm(b);
     if (!std::isfinite(norm_b))
@@ -325,25 +355,11 @@ namespace Nodus
         solution.block(block)(i) = scale_of(offset[block] + i) * x[offset[block] + i];
       solution.block(block).compress(dealii::VectorOperation::insert);
     }
-
-    Report report;
     for (int i = 0; i < size_; ++i) // back to the units of the caller
     {
       r[i] /= scale_of(i);
       b[i] /= scale_of(i);
     }
-    report.relative_residual = norm(r) / (norm_b > 0. ? norm(b) : 1.);
-
-    DMUMPS_STRUC_C &mumps = instance_->mumps;
-    if (symmetric_)
-      report.negative_pivots = infog(mumps, 12);
-    std::vector<int> null_pivots(infog(mumps, 28));
-    if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
-      std::copy_n(mumps.pivnul_list, null_pivots.size(), null_pivots.begin());
-    MPI_Bcast(null_pivots.data(), static_cast<int>(null_pivots.size()), MPI_INT, 0, communicator_);
-    for (const int i : null_pivots)
-      report.null_pivots.push_back(i - 1);
-    std::sort(report.null_pivots.begin(), report.null_pivots.end());
-    return report;
+    return norm(r) / (norm_b > 0. ? norm(b) : 1.);
   }
 } // namespace Nodus

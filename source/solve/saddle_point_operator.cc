@@ -275,13 +275,13 @@ namespace Nodus
     g.Update(1., m_part, 1.);
   }
 
-  BlockVector SaddlePointOperator::rhs() const
+  BlockVector SaddlePointOperator::scaled(const BlockVector &rhs) const
   {
     BlockVector b(std::vector<dealii::IndexSet>{system_.layout->owned[0], owned_m_}, system_.layout->communicator);
-    b.block(0)                           = system_.rhs.block(0);
+    b.block(0)                           = rhs.block(0);
     Epetra_MultiVector       &m          = b.block(1).trilinos_vector();
-    const Epetra_MultiVector &normal     = system_.rhs.block(1).trilinos_vector();
-    const Epetra_MultiVector &tangential = system_.rhs.block(2).trilinos_vector();
+    const Epetra_MultiVector &normal     = rhs.block(1).trilinos_vector();
+    const Epetra_MultiVector &tangential = rhs.block(2).trilinos_vector();
     for (int k = 0; k < normal.MyLength(); ++k)
     {
       m[0][3 * k]     = scale_[3 * k] * normal[0][k];

@@ -68,6 +68,9 @@ namespace
     print_choice("volumetric treatment", body.volumetric_treatment);
     print("rigid", body.rigid);
     print("rigid", body.motion);
+    print("rigid free", body.rigid_free);
+    print("rigid force", body.rigid_force);
+    print("rigid moment", body.rigid_moment);
     print_choice("law", body.material.law);
     print("Young's modulus", body.material.youngs_modulus);
     print("Poisson's ratio", body.material.poissons_ratio);

@@ -60,4 +60,10 @@ int main(int argc, char **argv)
   averaged.contact_pairs[0].normal   = ContactPairParameters::Normal::averaged;
   averaged.newton.maximum_iterations = 4;
   compare("averaged jumps", averaged);
+
+  Parameters driven = SlidingBlock::driven("cut_back_results");
+  use_loops(driven);
+  driven.newton.maximum_iterations       = 4;
+  driven.bodies[1].motion.translation[0] = "0.5*sin(3*t)";
+  compare("rigid body driven by force and moment", driven);
 }

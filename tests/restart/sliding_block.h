@@ -34,6 +34,23 @@ namespace SlidingBlock
     return p;
   }
 
+  /// The upper block is rigid, pressed by a force and tilted by moments.
+  inline Parameters driven(const std::string &results_folder)
+  {
+    Parameters p = parameters(results_folder);
+    auto      &b = p.bodies[1];
+    b.material   = MaterialParameters();
+    b.rigid      = true;
+    b.rigid_free = {2, 3, 4};
+    p.boundary_conditions.pop_back();
+    p.contact_pairs          = {pair(region(1, {z_plus}), region(2, {z_minus}), 0.3)};
+    b.motion.translation     = {"0.12*sin(3*t)", "0.02*t", "0"};
+    b.motion.rotation_centre = {0.8, 0.5, 0.5};
+    b.rigid_force            = {"0", "0", "-min(2*t,1)"};
+    b.rigid_moment           = {"0.03*t", "0.05*t", "0"};
+    return p;
+  }
+
   struct Outcome
   {
     std::vector<std::pair<double, std::vector<double>>> groups; ///< scale and values of one kind
@@ -57,6 +74,12 @@ namespace SlidingBlock
     }
     for (unsigned int c = 0; c < dim; ++c)
       forces.push_back(problem.contact_resultants()[0].slave_force[c]);
+    for (const RigidBodyMotion &body : problem.rigid_bodies())
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        lengths.insert(lengths.end(), {body.translation[c], body.rotation[c]});
+        forces.insert(forces.end(), {body.force[c], body.moment[c]});
+      }
     Outcome result{{}, times};
     for (const auto &values : {stresses, lengths, forces})
     {

@@ -35,8 +35,9 @@ namespace Nodus
     /// freedom at the start, the middle or the end of the time in which both act. The predicate of a region is
     /// evaluated at nodes, at the centres of faces and at the centres of cells, respectively; body forces ignore
     /// boundary ids. @p interval_ends: the times at which conditions may begin or cease to act, and the last of all.
-    /// All nodes of the rigid ones among @p body_parameters (of all bodies, or empty) are prescribed, too. Bodies,
-    /// degrees of freedom and mapping outlive the conditions.
+    /// All nodes of the rigid ones among @p body_parameters (of all bodies, or empty) are prescribed, too, for those
+    /// with free components as they are (RigidBodies moves them); nothing else may hold these, nor springs and
+    /// pressures act on them. Bodies, degrees of freedom and mapping outlive the conditions.
     BoundaryConditions(const std::vector<BoundaryConditionParameters> &parameters,
                        const Bodies                                   &bodies,
                        const dealii::DoFHandler<dim>                  &dof_handler,
@@ -102,6 +103,7 @@ namespace Nodus
     void                     collect_prescribed(const std::map<DoFIndex, Held> &held);
     void                     make_constraints();
     std::string              label(unsigned int condition) const;
+    bool                     is_driven(unsigned int condition) const;
 
     const Bodies                                       &bodies_;
     const dealii::DoFHandler<dim>                      &dof_handler_;
@@ -109,6 +111,7 @@ namespace Nodus
     std::vector<Stage>                                  stages_;
     unsigned int                                        stage_ = 0; ///< the one at hand
     unsigned int                                        n_given_;   ///< conditions; those of rigid bodies follow
+    std::vector<bool>                                   driven_;    ///< by body: rigid, with free components
     std::vector<BoundaryConditionParameters>            parameters_;
     std::vector<std::unique_ptr<dealii::Function<dim>>> functions_;
     std::vector<Prescribed>                             prescribed_; ///< locally relevant

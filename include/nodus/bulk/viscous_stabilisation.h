@@ -38,6 +38,12 @@ namespace Nodus
       return rate_ > 0.;
     }
 
+    /// Of the owned degree of freedom number @p i against its displacement in the increment [force/length].
+    double resistance(const unsigned int i) const
+    {
+      return acts() ? rate_ * resistance_[i] : 0.;
+    }
+
     /// Adds the resistance against @p moved (owned displacements since the start of the increment) to @p force, zero at
     /// constrained ones, and its tangent to @p matrix.
     void add(const Vector                            &moved,

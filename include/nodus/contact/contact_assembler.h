@@ -19,6 +19,7 @@ namespace Nodus
     std::vector<Point>   x;          ///< current positions of the surface nodes
     std::vector<Vector3> increment;  ///< their displacement since the start of the load step
     std::vector<Vector3> prescribed; ///< what the next correction must add at prescribed components, zero elsewhere
+    std::vector<Point>   centre;     ///< of the driven rigid bodies
     std::vector<double>  lambda;     ///< per slave node [pressure]
     std::vector<std::array<double, 2>> Lambda; ///< per slave node, in its tangent frame
   };
@@ -30,6 +31,7 @@ namespace Nodus
     std::vector<double>  lambda; ///< contact law, per slave node [volume]
     std::vector<std::array<double, 2>> Lambda;          ///< friction law, per slave node
     std::vector<double>                friction_weight; ///< sum of weight |mu lambda_s phi|, per slave node [force]
+    std::vector<double> rigid; ///< six per driven rigid body: force and moment about its centre, of owned sites alone
   };
 
   /// Residual and symmetric tangent of contact and friction for frozen pairing, statuses and threshold.
@@ -47,8 +49,9 @@ namespace Nodus
                      const SurfaceWeights  &weights,
                      const Status          &status);
 
-    /// Fills the contact couplings, the multiplier scale and the multiplier blocks of the right-hand side of @p system;
-    /// subtracts the contact forces from its displacement block (free components only). Collective.
+    /// Fills the contact couplings, the multiplier scale, the border and the multiplier blocks of the right-hand side
+    /// of
+    /// @p system; subtracts the contact forces from its displacement block (free components only). Collective.
     /// @p linearise_threshold: the thresholds follow the current pressure (SurfaceWeights, site_pressure); the tangent
     /// gets the derivative of the friction tractions with respect to lambda and is not symmetric any more. That of the
     /// factors which scale the friction law rows is left out where a row has one factor (one node a point), and
@@ -69,6 +72,15 @@ namespace Nodus
   private:
     /// d(mu lambda_s)/d lambda_k of every site whose friction follows the pressure.
     std::vector<std::vector<std::pair<unsigned int, double>>> threshold_derivative() const;
+
+    /// Part of a driven rigid body in the jump of a site: weight T + omega x arm.
+    struct RigidShare
+    {
+      unsigned int body   = dealii::numbers::invalid_unsigned_int;
+      double       weight = 0.;
+      Vector3      arm;
+    };
+    std::vector<RigidShare> rigid_shares(const ContactState &state) const;
 
     const ContactSurfaces &surfaces_;
     const Pairing         &pairing_;

@@ -3,6 +3,7 @@
 
 #include <nodus/contact/contact_assembler.h>
 #include <nodus/mesh/bodies.h>
+#include <nodus/mesh/rigid_bodies.h>
 
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/mapping.h>
@@ -33,9 +34,11 @@ namespace Nodus
     RigidMotions(const Bodies                  &bodies,
                  const dealii::DoFHandler<dim> &dof_handler,
                  const dealii::Mapping<dim>    &mapping,
+                 const RigidBodies             &rigid_bodies,
                  const OwnedNodes              &nodes,
                  const Vector                  &u);
 
+    /// By prescribed displacements; driven rigid bodies by the components that are not free.
     void hold_prescribed(const dealii::AffineConstraints<double> &constraints);
     /// By those of the conditions that act at @p time.
     void hold_springs(const std::vector<BoundaryConditionParameters> &conditions, double time);
@@ -61,6 +64,7 @@ namespace Nodus
     const Bodies                  &bodies_;
     const dealii::DoFHandler<dim> &dof_handler_;
     const dealii::Mapping<dim>    &mapping_;
+    const RigidBodies             &rigid_bodies_;
     const OwnedNodes              &nodes_;
     std::vector<Point>             x_;      ///< current positions of the nodes
     std::vector<Point>             centre_; ///< of the bodies

@@ -250,6 +250,39 @@ namespace Nodus
       return fixed_;
     }
 
+    /// The bodies that move as rigid bodies driven by forces: @p numbers by body, invalid for the others.
+    void set_rigid_bodies(const std::vector<unsigned int> &numbers);
+    /// Which of these a node belongs to, or invalid_unsigned_int.
+    unsigned int rigid_body(const unsigned int node) const
+    {
+      return rigid_body_.empty() ? dealii::numbers::invalid_unsigned_int : rigid_body_[node];
+    }
+    /// Calls f(flat index, weight) for the unknowns that move component @p c of a node: its own displacement, where
+    /// that is free, or translation and spin of its rigid body, @p x being where the node is and @p centre those of the
+    /// bodies.
+    template <typename Function>
+    void for_each_unknown(const unsigned int        node,
+                          const unsigned int        c,
+                          const Point              &x,
+                          const std::vector<Point> &centre,
+                          const Function           &f) const
+    {
+      if (!fixed(node, c))
+        f(nodes_[node].dofs[c], 1.);
+      else if (const unsigned int body = rigid_body(node); body != dealii::numbers::invalid_unsigned_int)
+        for_each_rigid_unknown(body, c, 1., Vector3(x - centre[body]), f);
+    }
+    /// The same for what moves like component @p c of @p weight T + omega x @p arm.
+    template <typename Function>
+    void for_each_rigid_unknown(
+        const unsigned int body, const unsigned int c, const double weight, const Vector3 &arm, const Function &f) const
+    {
+      const unsigned int j = (c + 1) % dim, k = (c + 2) % dim;
+      f(layout_.rigid(body, c), weight);
+      f(layout_.rigid(body, dim + j), arm[k]);
+      f(layout_.rigid(body, dim + k), -arm[j]);
+    }
+
     /// x = X + u for all nodes.
     std::vector<Point> positions(const std::vector<Vector3> &u) const;
 
@@ -268,6 +301,7 @@ namespace Nodus
     void        link_followers(const std::vector<FaceRecord> &records);
     SurfaceFace make_face(const FaceRecord &record) const;
     void        gather_fixed();
+    void        find_rigid_nodes();
 
     const std::vector<ContactPairParameters>  &pairs_;
     MPI_Comm                                   communicator_;
@@ -288,6 +322,7 @@ namespace Nodus
     std::vector<double>                        face_size_;
     Vector                                     fixed_mask_, fetched_at_; ///< fetched_at_: displacement
     std::vector<std::array<bool, dim>>         fixed_;
+    std::vector<unsigned int>                  rigid_number_, rigid_body_; ///< by body; by node, empty without any
     BlockLayout                                layout_;
     mutable Vector                             ghosted_; ///< for gather()
   };

@@ -5,6 +5,7 @@
 
 #include <deal.II/base/function_parser.h>
 
+#include <array>
 #include <memory>
 #include <string>
 
@@ -26,6 +27,9 @@ namespace Nodus
     }
   };
 
+  /// Rotation by the length of @p vector [radians] about its direction, right-handed (Rodrigues' formula).
+  dealii::Tensor<2, dim> rotation_by(const Vector3 &vector);
+
   /// x = c + R(t) (X - c) + T(t).
   class PrescribedMotion
   {
@@ -39,7 +43,19 @@ namespace Nodus
     /// @throws InputError, on every rank, where an expression is not a number.
     Placement at(double t) const;
 
+    const Point &centre() const
+    {
+      return centre_;
+    }
+    /// Of the centre. @throws as at()
+    Vector3 translation(double t) const;
+    /// Rotation vector: angle in radians times axis. @throws as at()
+    Vector3 rotation(double t) const;
+
   private:
+    /// Translation and angle in degrees. @throws as at()
+    std::array<double, dim + 1> values(double t) const;
+
     std::string                                      label_;
     Point                                            centre_;
     Vector3                                          axis_;     ///< unit, or zero without rotation

@@ -73,6 +73,16 @@ namespace Nodus
     unsigned int geometry = 0, threshold = 0, status = 0, newton = 0, krylov = 0;
     unsigned int fallbacks = 0; ///< merged iterations that stalled and were started again with loops
   };
+
+  /// A rigid body that force and moment drive, since the start.
+  struct RigidBodyMotion
+  {
+    std::string name;
+    Vector3     translation; ///< of its rotation centre [length]
+    Vector3     rotation;    ///< rotation vector, no longer than half a turn [radians]
+    Vector3     force;       ///< on the body, but for contact and loads on its cells [force]
+    Vector3     moment;      ///< of the same about its centre as it moves [force length]
+  };
 } // namespace Nodus
 
 #endif

@@ -14,8 +14,9 @@
 namespace Nodus
 {
   /// contact.csv (one row per increment and pair), reactions.csv (one row per increment and displacement condition),
-  /// energy.csv (one row per increment) and convergence.csv (one row per Newton iteration), rewritten as a whole after
-  /// each increment (temporary name, then rename) by rank 0.
+  /// rigid_bodies.csv (one row per increment and rigid body with free components, if there are any), energy.csv (one
+  /// row per increment) and convergence.csv (one row per Newton iteration), rewritten as a whole after each increment
+  /// (temporary name, then rename) by rank 0.
   class Tables
   {
   public:
@@ -33,6 +34,7 @@ namespace Nodus
              double                                t,
              const std::vector<ContactResultants> &contact,
              const std::vector<Reaction>          &reactions,
+             const std::vector<RigidBodyMotion>   &rigid_bodies,
              const Energies                       &energies,
              const IterationCounts                &counts);
 
@@ -56,6 +58,7 @@ namespace Nodus
     struct Rows
     {
       std::string contact, reactions, energies, iterations; ///< with the headers
+      std::string rigid_bodies;                             ///< likewise, empty without any
     };
     const Rows &rows() const
     {

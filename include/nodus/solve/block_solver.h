@@ -11,7 +11,11 @@ namespace Nodus
   public:
     BlockSolver(const LinearSolverParameters &parameters, const std::vector<Point> &node_positions);
 
-    Report solve(const LinearSystem &system, BlockVector &solution, double relative_tolerance = 0.) override;
+    using LinearSolver::solve;
+    Report solve(const LinearSystem                     &system,
+                 const std::vector<const BlockVector *> &rhs,
+                 std::vector<BlockVector>               &solutions,
+                 double                                  relative_tolerance) override;
 
   private:
     const LinearSolverParameters parameters_;

@@ -21,18 +21,28 @@ namespace Nodus
   public:
     CondensedSolver(const LinearSolverParameters &parameters, const std::vector<Point> &node_positions);
 
-    Report solve(const LinearSystem &system, BlockVector &solution, double relative_tolerance = 0.) override;
+    using LinearSolver::solve;
+    Report solve(const LinearSystem                     &system,
+                 const std::vector<const BlockVector *> &rhs,
+                 std::vector<BlockVector>               &solutions,
+                 double                                  relative_tolerance) override;
 
   private:
     void make_multigrid(const LinearSystem &system, const Condensation &condensation);
     bool hierarchy_fits(const std::vector<char> &signature, MPI_Comm communicator) const;
     /// All return the iterations; @p x starts from zero.
-    unsigned int
-    iterate(const SaddlePointOperator &matrix, Condensation &condensation, double tolerance, BlockVector &x) const;
+    unsigned int iterate(const SaddlePointOperator &matrix,
+                         Condensation              &condensation,
+                         const BlockVector         &b,
+                         double                     tolerance,
+                         BlockVector               &x) const;
     unsigned int
     conjugate_gradients(const Condensation &condensation, const Vector &rhs, double tolerance, Vector &y) const;
-    unsigned int
-    gmres(const SaddlePointOperator &matrix, Condensation &condensation, double tolerance, BlockVector &x) const;
+    unsigned int gmres(const SaddlePointOperator &matrix,
+                       Condensation              &condensation,
+                       const BlockVector         &b,
+                       double                     tolerance,
+                       BlockVector               &x) const;
 
     const LinearSolverParameters     parameters_;
     const std::vector<Point>         node_positions_;

@@ -18,7 +18,11 @@ namespace Nodus
     explicit DirectSolver(const BlockLayout &layout);
     ~DirectSolver() override;
 
-    Report solve(const LinearSystem &system, BlockVector &solution, double relative_tolerance = 0.) override;
+    using LinearSolver::solve;
+    Report solve(const LinearSystem                     &system,
+                 const std::vector<const BlockVector *> &rhs,
+                 std::vector<BlockVector>               &solutions,
+                 double                                  relative_tolerance) override;
 
   private:
     struct Instance;
@@ -28,6 +32,12 @@ namespace Nodus
     bool collect_entries(const LinearSystem &system, const std::vector<double> &scale);
 
     void factorise(bool pattern_changed);
+
+    /// With the factors at hand. @returns the relative residual.
+    double substitute(const BlockLayout         &layout,
+                      const std::vector<double> &scale,
+                      const BlockVector         &rhs,
+                      BlockVector               &solution);
 
     /// @p x is the right-hand side on entry and the solution on return, on every rank.
     void apply_inverse(std::vector<double> &x);

@@ -30,7 +30,19 @@ namespace Nodus
     /// to the tolerance. @throws SolverFailure on every rank when the system cannot be solved; a singular system is
     /// solved with null pivots reported (direct), the caller decides.
     /// An iterative solver may stop at @p relative_tolerance, or at its own tolerance where that is larger.
-    virtual Report solve(const LinearSystem &system, BlockVector &solution, double relative_tolerance = 0.) = 0;
+    Report solve(const LinearSystem &system, BlockVector &solution, const double relative_tolerance = 0.)
+    {
+      std::vector<BlockVector> solutions;
+      const Report             report = solve(system, {&system.rhs}, solutions, relative_tolerance);
+      solution.swap(solutions.front());
+      return report;
+    }
+    /// The same for the right-hand sides @p rhs, at least one, instead of that of @p system. The report is that of the
+    /// first one, with the iterations of all.
+    virtual Report solve(const LinearSystem                     &system,
+                         const std::vector<const BlockVector *> &rhs,
+                         std::vector<BlockVector>               &solutions,
+                         double                                  relative_tolerance) = 0;
 
     /// Set-up counts as Phase::solver_set_up from now on.
     void set_profile(Profile *profile)

@@ -24,6 +24,7 @@ namespace Nodus
     DoFIndex                        n_u;
     DoFIndex                        n_slave_nodes;
     std::vector<DoFIndex>           slave_nodes; ///< of the owned ones: global displacement node, its dofs are 3i + c
+    unsigned int                    n_rigid = 0; ///< bodies that forces and moments drive
 
     DoFIndex lambda(const DoFIndex k) const
     {
@@ -36,6 +37,11 @@ namespace Nodus
     DoFIndex size() const
     {
       return n_u + 3 * n_slave_nodes;
+    }
+    /// The border behind the flat indices: six components of each driven rigid body, on every rank.
+    DoFIndex rigid(const unsigned int body, const unsigned int component) const
+    {
+      return size() + 2 * dim * body + component;
     }
     /// Sets @p v to zero with this layout, fully distributed.
     void reinit(BlockVector &v) const;
@@ -83,13 +89,30 @@ namespace Nodus
     const BlockLayout *layout;
     NodeMatrix         bulk;
     TripletMatrix      contact, variation;
-    BlockVector        rhs;
-    bool               symmetric = true; ///< there is no variation; the same on every rank
+    /// Entries with the row or the column of a rigid body: translation, and spin about its centre. Not part of what a
+    /// LinearSolver solves (BorderedSystem).
+    TripletMatrix       border;
+    std::vector<double> border_rhs; ///< six per rigid body, to be summed over the ranks
+    BlockVector         rhs;
+    bool                symmetric = true; ///< there is no variation; the same on every rank
     /// Per owned slave node, per multiplier: scale s > 0 for symmetric row and column equilibration
     /// (multiplier = s x scaled multiplier); friction rows carry mu lambda_s and get its inverse. Size 3 x owned slave
     /// nodes: lambda, Lambda_1, Lambda_2 of the first owned node, and so on.
     std::vector<double> multiplier_scale;
   };
+  /// Adds to the border how the moment of a force, work conjugate to arm, changes with the spin of its rigid body:
+  /// delta (arm x force) = (omega x arm) x force.
+  inline void add_turn(const BlockLayout &layout,
+                       const unsigned int body,
+                       const Vector3     &arm,
+                       const Vector3     &force,
+                       TripletMatrix     &border)
+  {
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int j = 0; j < dim; ++j)
+        border.add(
+            layout.rigid(body, dim + i), layout.rigid(body, dim + j), arm[i] * force[j] - (i == j ? arm * force : 0.));
+  }
 } // namespace Nodus
 
 #endif

@@ -62,8 +62,8 @@ namespace Nodus
 
     void vmult(BlockVector &dst, const BlockVector &src) const;
 
-    /// The right-hand side, scaled.
-    BlockVector rhs() const;
+    /// A right-hand side of the system, scaled.
+    BlockVector scaled(const BlockVector &rhs) const;
 
     /// Writes @p x in the unknowns of the system.
     void to_solution(const BlockVector &x, BlockVector &solution) const;
