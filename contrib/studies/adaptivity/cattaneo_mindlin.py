@@ -1,0 +1,189 @@
+#!/usr/bin/python3
+"""Partial slip (Cattaneo and Mindlin) on uniform and adaptive meshes, and with the mesh refined in mid-path.
+Writes cattaneo_mindlin.md, cattaneo_mindlin.png.
+
+    cattaneo_mindlin.py [--report]     (--report: from the runs that are there)
+
+First table: errors against unknowns and CPU. Second: a mesh that becomes finer during pressing and shearing against the same
+mesh, or one as fine, from the start; loads by forces, and by displacements. Third: the change of the contact force with each
+new mesh, and what other meshes would make of it.
+"""
+
+import json
+import os
+import re
+import sys
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+sys.path.insert(0, os.path.join(os.path.dirname(HERE), "schemes"))
+import cattaneo_mindlin as theory  # noqa: E402  (that of schemes/)
+import common  # noqa: E402
+
+sys.path.insert(0, HERE)
+import partial_slip_case as case  # noqa: E402
+
+MERGED = {f"{loop} loop/Mode": "newton" for loop in ("Geometry", "Threshold", "Status")}
+NEAR = {"Adaptivity/Contact distance": 0.0075}  # gap at 1.22 contact radii
+LEVELS = {"Adaptivity/Interval": 1, "Adaptivity/Refine fraction": 0.6}
+TARGET = {"Adaptivity/Marking": "target error", "Adaptivity/Target error": 1e-9}  # all cells are split
+
+
+def refined(level):
+    return {"Body 1/Global refinement": level, "Body 2/Global refinement": level}
+
+
+def adaptive(degree, first, level):
+    return {"Discretization/Degree": degree, **refined(first), **NEAR, **LEVELS,
+            "Adaptivity/Initial cycles": max(0, level - 1), "Adaptivity/Maximum level": level}  # fmt: skip
+
+
+def series():
+    for degree, levels in ((1, (2, 3, 4)), (2, (1, 2, 3))):
+        for level in levels:
+            yield f"Q{degree} uniform {level}", "force", {"Discretization/Degree": degree, **refined(level)}
+    for degree, first, levels in ((1, 2, (1, 2, 3, 4)), (2, 1, (1, 2, 3))):
+        for level in levels:
+            yield f"Q{degree} adaptive {level}", "force", adaptive(degree, first, level)
+
+
+def paths():
+    """Name, loads, keys. The reference of "mid-path" is the run of the same loads "from the start"."""
+    for loads in ("force", "displacement"):
+        for level in (0, 1, 2):
+            yield f"split {level} from the start", "graded_" + loads, refined(level)
+        yield "split 2 in mid-path", "graded_" + loads, {**TARGET, "Adaptivity/Interval": 3, "Adaptivity/Maximum level": 2}
+        for cycles in (2, 3):
+            yield (f"local {cycles} from the start", loads,
+                   {**refined(2), **NEAR, "Adaptivity/Initial cycles": cycles, "Adaptivity/Maximum level": cycles})  # fmt: skip
+        yield "local 3 in mid-path", loads, {**refined(2), **LEVELS, "Adaptivity/Maximum level": 3}
+        yield ("local 2 from the start, 3 in mid-path", loads,
+               {**refined(2), **NEAR, **LEVELS, "Adaptivity/Initial cycles": 2, "Adaptivity/Maximum level": 3})  # fmt: skip
+
+
+def unknowns(log):
+    found = re.findall(r"-> (\d+) unknowns", log) or re.findall(r"(\d+) displacement degrees of freedom", log)
+    return int(found[-1])
+
+
+def measure(name, loads, keys):
+    folder = re.sub(r"[ ,]+", "_", f"adaptivity/slip {loads} {name}")
+    run = common.run(os.path.join(common.SCRATCH, "adaptivity", loads + ".prm"), folder, {**MERGED, **keys})
+    found = {"name": name, "loads": loads, "converged": run.converged, "cpu": run.cpu}
+    if not run.converged:
+        return found
+    values, (r, q) = theory.measure(run, 0.0)
+    surface = run.surface()
+    nodes = {}
+    for x, status in zip(surface.reference, surface.fields["CSTATUS"]):
+        nodes["%.4f %.4f %.4f" % tuple(x)] = status
+    body = run.body()
+    top = np.abs(body.reference[:, 2] - case.SIZE) < 1e-6
+    found.update(values)
+    found.update(
+        unknowns=unknowns(run.log), status=nodes, r=list(r), q=list(q),
+        shift=float(np.mean(body.fields["displacement"][top, 0])),
+        force=[[row["time"], row["slave force x"], row["slave force y"], row["slave force z"]] for row in run.contact()],
+        counts=[int(run.contact()[-1][key]) for key in ("open nodes", "slip nodes", "stick nodes")],
+        jumps=[float(jump) for jump in re.findall(r"the contact force of contact changes by (\S+) %", run.log)],
+        failed=run.log.count("no equilibrium on the new mesh"))  # fmt: skip
+    return found
+
+
+def all_runs():
+    theory.RADIUS, theory.YOUNG, theory.FRICTION = case.RADIUS, case.YOUNG, case.FRICTION
+    boxes, graded = case.boxes(), case.graded()
+    for mesh, prefix in ((boxes, ""), (graded, "graded_")):
+        case.write(prefix + "force", mesh, case.BY_FORCE)
+        case.write(prefix + "displacement", mesh, case.BY_DISPLACEMENT)
+    return {"series": [measure(*keys) for keys in series()], "paths": [measure(*keys) for keys in paths()]}
+
+
+def percent(value, digits=2):
+    return f"{100 * value:.{digits}f} %"
+
+
+def main():
+    kept = os.path.join(common.SCRATCH, "adaptivity", "cattaneo_mindlin.json")
+    if "--report" in sys.argv:
+        with open(kept) as file:
+            found = json.load(file)
+    else:
+        found = all_runs()
+        with open(kept, "w") as file:
+            json.dump(found, file)
+    report(found)
+
+
+def report(found):
+    rows = []
+    for run in found["series"]:
+        if not run["converged"]:
+            rows.append([run["name"], "", f"{run['cpu']:.1f}", "did not converge"] + [""] * 5)
+            continue
+        force = run["force"][-1]
+        rows.append([run["name"], run["unknowns"], f"{run['cpu']:.1f}", percent(run["pressure"], 1), percent(run["shear"], 1),
+                     f"{run['closed'] / run['a']:.3f}", f"{run['stick'] / run['c']:.3f}",
+                     f"{2 * abs(force[3]) / case.FORCE:.6f}", f"{run['shift']:.6f}"])  # fmt: skip
+    header = ["mesh", "unknowns", "CPU s", "L2 error of p", "L2 error of q", "closed radius / a", "stick radius / c"]
+    first = common.table(os.path.join(common.SCRATCH, "part.md"), header + ["F / applied", "shift"], rows)
+
+    rows, changes = [], []
+    start = {}
+    for run in found["paths"]:
+        if "from the start" in run["name"] and "mid-path" not in run["name"]:
+            start[run["loads"], run["name"]] = run
+        if not run["converged"]:
+            rows.append([run["loads"], run["name"], "", f"{run['cpu']:.1f}", "did not converge"] + [""] * 8)
+            continue
+        force = run["force"][-1]
+        rows.append([run["loads"].replace("graded_", ""), run["name"], run["unknowns"], f"{run['cpu']:.1f}",
+                     f"{2 * force[3]:.4f}", f"{-2 * force[1]:.4f}", f"{run['shift']:.6f}",
+                     percent(run["pressure"], 1), percent(run["shear"], 1), f"{run['closed']:.3f}", f"{run['stick']:.3f}",
+                     " / ".join(map(str, run["counts"])), differing(run, start)])  # fmt: skip
+        if "mid-path" in run["name"]:
+            changes.append([run["loads"].replace("graded_", ""), run["name"],
+                            ", ".join(f"{jump:.3g}" for jump in run["jumps"]), run["failed"] or ""])  # fmt: skip
+    header = ["loads", "mesh", "unknowns", "CPU s", "F", "Q", "shift", "L2 error of p", "L2 error of q", "closed radius"]
+    second = common.table(os.path.join(common.SCRATCH, "part.md"),
+                          header + ["stick radius", "open / slip / stick", "statuses that differ"], rows)  # fmt: skip
+    third = common.table(os.path.join(common.SCRATCH, "part.md"),
+                         ["loads", "mesh", "changes of the contact force, %", "without equilibrium"], changes)  # fmt: skip
+    with open(os.path.join(HERE, "cattaneo_mindlin.md"), "w") as file:
+        file.write(TEXT.format(first=first, second=second, third=third))
+
+    figure, axes = common.figure(10.0, 4.0)
+    figure.clear()
+    left, right = figure.subplots(1, 2)
+    for axis, key, label in ((left, "unknowns", "unknowns"), (right, "cpu", "CPU s")):
+        for kind, style in (("Q1 uniform", "o--"), ("Q1 adaptive", "o-"), ("Q2 uniform", "s--"), ("Q2 adaptive", "s-")):
+            runs = [run for run in found["series"] if run["converged"] and run["name"].startswith(kind)]
+            axis.loglog([run[key] for run in runs], [run["shear"] for run in runs], style, label=kind)
+        axis.set_xlabel(label)
+        axis.set_ylabel("L2 error of the shear traction")
+        axis.grid(True, which="both", alpha=0.3)
+    left.legend()
+    figure.savefig(os.path.join(HERE, "cattaneo_mindlin.png"), dpi=120)
+
+
+def differing(run, start):
+    """Slave nodes that both meshes have and that differ in status, against the same mesh from the start."""
+    level = re.search(r"(split|local)", run["name"]).group(1)
+    other = start.get((run["loads"], f"{level} {2 if level == 'split' else 3} from the start"))
+    if other is None or "mid-path" not in run["name"]:
+        return ""
+    both = set(run["status"]) & set(other["status"])
+    return f"{sum(run['status'][n] != other['status'][n] for n in both)} of {len(both)}"
+
+
+TEXT = """## Partial slip on adaptive meshes
+
+{first}
+{second}
+{third}
+"""
+
+if __name__ == "__main__":
+    main()
