@@ -28,6 +28,8 @@ import partial_slip_case as case  # noqa: E402
 MERGED = {f"{loop} loop/Mode": "newton" for loop in ("Geometry", "Threshold", "Status")}
 NEAR = {"Adaptivity/Contact distance": 0.0075}  # gap at 1.22 contact radii
 LEVELS = {"Adaptivity/Interval": 1, "Adaptivity/Refine fraction": 0.6}
+FIELDS = ("area", "CSTATUS", "CPRESS", "friction_traction")
+HOLD = {"Load stepping/Increments": "1, 12"}
 TARGET = {"Adaptivity/Marking": "target error", "Adaptivity/Target error": 1e-9}  # all cells are split
 
 
@@ -43,10 +45,12 @@ def adaptive(degree, first, level):
 def series():
     for degree, levels in ((1, (2, 3, 4)), (2, (1, 2, 3))):
         for level in levels:
-            yield f"Q{degree} uniform {level}", "force", {"Discretization/Degree": degree, **refined(level)}
+            yield (f"Q{degree} uniform {level}", "force",
+                   {"Discretization/Degree": degree, **refined(level), "Load stepping/Increments": "1, 1"})  # fmt: skip
     for degree, first, levels in ((1, 2, (1, 2, 3, 4)), (2, 1, (1, 2, 3))):
         for level in levels:
-            yield f"Q{degree} adaptive {level}", "force", adaptive(degree, first, level)
+            yield (f"Q{degree} adaptive {level}", "force",
+                   {**adaptive(degree, first, level), "Load stepping/Increments": "1, 2"})  # fmt: skip
 
 
 def paths():
@@ -54,18 +58,44 @@ def paths():
     for loads in ("force", "displacement"):
         for level in (0, 1, 2):
             yield f"split {level} from the start", "graded_" + loads, refined(level)
-        yield "split 2 in mid-path", "graded_" + loads, {**TARGET, "Adaptivity/Interval": 3, "Adaptivity/Maximum level": 2}
+        for when, interval in (("", 4), (", early", 1)):
+            yield ("split 2 in mid-path" + when, "graded_" + loads,
+                   {**TARGET, **HOLD, "Adaptivity/Interval": interval, "Adaptivity/Maximum level": 2})  # fmt: skip
         for cycles in (2, 3):
             yield (f"local {cycles} from the start", loads,
                    {**refined(2), **NEAR, "Adaptivity/Initial cycles": cycles, "Adaptivity/Maximum level": cycles})  # fmt: skip
-        yield "local 3 in mid-path", loads, {**refined(2), **LEVELS, "Adaptivity/Maximum level": 3}
-        yield ("local 2 from the start, 3 in mid-path", loads,
-               {**refined(2), **NEAR, **LEVELS, "Adaptivity/Initial cycles": 2, "Adaptivity/Maximum level": 3})  # fmt: skip
+        for cycles in (0, 2):
+            yield ("local 3 in mid-path" + (f", {cycles} from the start" if cycles else ""), loads,
+                   {**refined(2), **NEAR, **LEVELS, **HOLD, "Adaptivity/Interval": 2, "Adaptivity/Initial cycles": cycles,
+                    "Adaptivity/Maximum level": 3})  # fmt: skip
 
 
 def unknowns(log):
     found = re.findall(r"-> (\d+) unknowns", log) or re.findall(r"(\d+) displacement degrees of freedom", log)
     return int(found[-1])
+
+
+def radii(surface):
+    """Of the half circles with the areas of closed and of sticking nodes."""
+    _, first = np.unique(np.round(surface.reference, 9), axis=0, return_index=True)
+    area, status = surface.fields["area"][first], surface.fields["CSTATUS"][first]
+    return [float(np.sqrt(2 * np.sum(area[status > least]) / np.pi)) for least in (0.5, 1.5)]
+
+
+def jumps(run):
+    """Of each new mesh: increment, time, per cent of the log, and force and radii before and after where the load is held."""
+    found, rows, increment = [], {int(row["increment"]): row for row in run.contact()}, 0
+    for line in run.log.splitlines():
+        if match := re.match(r"Increment (\d+),", line):
+            increment = int(match.group(1))
+        elif match := re.search(r"the contact force of contact changes by (\S+) %", line):
+            states = []
+            for row in (rows[increment], rows[increment + 1]):
+                force = [2 * row["slave force " + component] for component in "xyz"]
+                states.append(force + radii(run.surface(row["time"])))
+            held = increment % 2 == 0 and "1, 12" in HOLD.values()
+            found.append([increment, rows[increment]["time"], float(match.group(1)), states if held else None])
+    return found
 
 
 def measure(name, loads, keys):
@@ -77,17 +107,18 @@ def measure(name, loads, keys):
     values, (r, q) = theory.measure(run, 0.0)
     surface = run.surface()
     nodes = {}
-    for x, status in zip(surface.reference, surface.fields["CSTATUS"]):
-        nodes["%.4f %.4f %.4f" % tuple(x)] = status
+    for x, *values_here in zip(surface.reference, *(surface.fields[key] for key in FIELDS)):
+        if values_here[0] > 0:  # no master, no hanging node
+            nodes["%.4f %.4f" % tuple(x[:2])] = [float(v) for v in values_here[:3]] + [float(values_here[3][0])]
     body = run.body()
     top = np.abs(body.reference[:, 2] - case.SIZE) < 1e-6
     found.update(values)
     found.update(
-        unknowns=unknowns(run.log), status=nodes, r=list(r), q=list(q),
+        unknowns=unknowns(run.log), nodes=nodes, r=list(r), q=list(q),
         shift=float(np.mean(body.fields["displacement"][top, 0])),
         force=[[row["time"], row["slave force x"], row["slave force y"], row["slave force z"]] for row in run.contact()],
         counts=[int(run.contact()[-1][key]) for key in ("open nodes", "slip nodes", "stick nodes")],
-        jumps=[float(jump) for jump in re.findall(r"the contact force of contact changes by (\S+) %", run.log)],
+        jumps=jumps(run),
         failed=run.log.count("no equilibrium on the new mesh"))  # fmt: skip
     return found
 
@@ -136,21 +167,27 @@ def report(found):
         if "from the start" in run["name"] and "mid-path" not in run["name"]:
             start[run["loads"], run["name"]] = run
         if not run["converged"]:
-            rows.append([run["loads"], run["name"], "", f"{run['cpu']:.1f}", "did not converge"] + [""] * 8)
+            rows.append([run["loads"], run["name"], "", f"{run['cpu']:.1f}", "did not converge"] + [""] * 10)
             continue
         force = run["force"][-1]
         rows.append([run["loads"].replace("graded_", ""), run["name"], run["unknowns"], f"{run['cpu']:.1f}",
                      f"{2 * force[3]:.4f}", f"{-2 * force[1]:.4f}", f"{run['shift']:.6f}",
                      percent(run["pressure"], 1), percent(run["shear"], 1), f"{run['closed']:.3f}", f"{run['stick']:.3f}",
-                     " / ".join(map(str, run["counts"])), differing(run, start)])  # fmt: skip
-        if "mid-path" in run["name"]:
-            changes.append([run["loads"].replace("graded_", ""), run["name"],
-                            ", ".join(f"{jump:.3g}" for jump in run["jumps"]), run["failed"] or ""])  # fmt: skip
+                     " / ".join(map(str, run["counts"])), *against_start(run, start)])  # fmt: skip
+        for increment, time, logged, states in run["jumps"]:
+            line = [run["loads"].replace("graded_", ""), run["name"], f"{max(0, time - 1):.3f}", f"{logged:.3g} %"]
+            if states:
+                (x, y, z, closed, stick), (x2, y2, z2, closed2, stick2) = states
+                line += [percent((z2 - z) / z, 3), percent((x2 - x) / x, 3), percent((y2 - y) / z, 2)]
+                line += [f"{closed:.3f} -> {closed2:.3f}", f"{stick:.3f} -> {stick2:.3f}"]
+                line += [other_meshes(run, start, time, states)]
+            changes.append(line + [""] * (10 - len(line)))
     header = ["loads", "mesh", "unknowns", "CPU s", "F", "Q", "shift", "L2 error of p", "L2 error of q", "closed radius"]
-    second = common.table(os.path.join(common.SCRATCH, "part.md"),
-                          header + ["stick radius", "open / slip / stick", "statuses that differ"], rows)  # fmt: skip
+    second = common.table(os.path.join(common.SCRATCH, "part.md"), header +
+                          ["stick radius", "open / slip / stick", "p differs", "q differs", "statuses differ"], rows)  # fmt: skip
+    header = ["loads", "mesh", "t - 1", "log", "of F", "of Q", "of the reaction of the symmetry plane / F"]
     third = common.table(os.path.join(common.SCRATCH, "part.md"),
-                         ["loads", "mesh", "changes of the contact force, %", "without equilibrium"], changes)  # fmt: skip
+                         header + ["closed radius", "stick radius", "F, Q of the new mesh from the start"], changes)  # fmt: skip
     with open(os.path.join(HERE, "cattaneo_mindlin.md"), "w") as file:
         file.write(TEXT.format(first=first, second=second, third=third))
 
@@ -168,14 +205,29 @@ def report(found):
     figure.savefig(os.path.join(HERE, "cattaneo_mindlin.png"), dpi=120)
 
 
-def differing(run, start):
-    """Slave nodes that both meshes have and that differ in status, against the same mesh from the start."""
-    level = re.search(r"(split|local)", run["name"]).group(1)
-    other = start.get((run["loads"], f"{level} {2 if level == 'split' else 3} from the start"))
-    if other is None or "mid-path" not in run["name"]:
+def against_start(run, start):
+    """At the nodes that it shares with the finest mesh from the start: differences of p and q, of the norm of these, and
+    nodes that differ in status."""
+    kind = "split 2" if "split" in run["name"] else "local 3"
+    other = start.get((run["loads"], kind + " from the start"))
+    if other is None or other is run:
+        return ["", "", ""]
+    both = [(run["nodes"][n], other["nodes"][n]) for n in run["nodes"] if n in other["nodes"]]
+    here, there = (np.array(values) for values in zip(*both))
+    area = np.minimum(here[:, :1], there[:, :1])
+    apart = np.sqrt(np.sum(area * (here - there) ** 2, axis=0) / np.sum(area * there**2, axis=0))
+    return [percent(apart[2], 1), percent(apart[3], 1), f"{np.sum(here[:, 1] != there[:, 1])} of {len(both)}"]
+
+
+def other_meshes(run, start, time, states):
+    """By how much F and Q after the change differ from those of a run from the start on the same mesh."""
+    if "split" not in run["name"]:
         return ""
-    both = set(run["status"]) & set(other["status"])
-    return f"{sum(run['status'][n] != other['status'][n] for n in both)} of {len(both)}"
+    level = [jump[0] for jump in run["jumps"]].index(next(j[0] for j in run["jumps"] if j[1] == time)) + 1
+    other = start.get((run["loads"], f"split {level} from the start"))
+    after = min((row for row in other["force"]), key=lambda row: abs(row[0] - time - 1 / 12))
+    x, _, z, _, _ = states[1]
+    return f"{percent(z / (2 * after[3]) - 1, 3)}, {percent(x / (2 * after[1]) - 1, 3)}"
 
 
 TEXT = """## Partial slip on adaptive meshes

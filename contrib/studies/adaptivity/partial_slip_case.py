@@ -13,6 +13,8 @@ RADIUS, YOUNG, FRICTION = 100.0, 1000.0, 0.3  # Poisson's ratio 0: the theory is
 SIZE, BLOCK = 8.0, 9.0
 FORCE = 4 * YOUNG / 2 / (3 * RADIUS)  # of the full model: contact radius 1
 RATIO = 0.5  # tangential force over friction times normal force
+# six steps; of twelve increments every other one holds the load, and shows what a new mesh has changed
+STEPS = "floor(6*max(t-1,0)+0.5+1e-6)/6"
 APPROACH, SHIFT = 0.0104, 0.0012  # about the same by displacement
 
 
@@ -76,7 +78,7 @@ subsection Boundary condition 5
   set Body         = 1
   set Boundary ids = 15
   set Components   = x
-  set Value        = {RATIO * FRICTION * FORCE / (2 * SIZE) ** 2}*max(t-1,0)
+  set Value        = {RATIO * FRICTION * FORCE / (2 * SIZE) ** 2}*{STEPS}
 end
 """
 
@@ -93,12 +95,12 @@ subsection Boundary condition 3
   set Body         = 1
   set Boundary ids = 15
   set Components   = x, y, z
-  set Value        = {SHIFT}*max(t-1,0); 0; -{APPROACH}*min(t,1)
+  set Value        = {SHIFT}*{STEPS}; 0; -{APPROACH}*min(t,1)
 end
 """
 
 
-def write(name, mesh_file, loads, increments="2, 6"):
+def write(name, mesh_file, loads, increments="1, 6"):
     bodies = "".join(
         f"""subsection Body {number}
   set Name       = {body}
