@@ -2,7 +2,7 @@
 """Partial slip (Cattaneo and Mindlin) on uniform and adaptive meshes, and with the mesh refined in mid-path.
 Writes cattaneo_mindlin.md, cattaneo_mindlin.png.
 
-    cattaneo_mindlin.py [--report]     (--report: from the runs that are there)
+    cattaneo_mindlin.py [--report | --paths]     (--report: from the runs that are there; --paths: only the first table is)
 
 First table: errors against unknowns and CPU. Second: a mesh that becomes finer during pressing and shearing against the same
 mesh, or one as fine, from the start; loads by forces, and by displacements. Third: the change of the contact force with each
@@ -28,8 +28,9 @@ import partial_slip_case as case  # noqa: E402
 MERGED = {f"{loop} loop/Mode": "newton" for loop in ("Geometry", "Threshold", "Status")}
 NEAR = {"Adaptivity/Contact distance": 0.0075}  # gap at 1.22 contact radii
 LEVELS = {"Adaptivity/Interval": 1, "Adaptivity/Refine fraction": 0.6}
+KEPT = os.path.join(common.SCRATCH, "adaptivity", "cattaneo_mindlin.json")
 FIELDS = ("area", "CSTATUS", "CPRESS", "friction_traction")
-HOLD = {"Load stepping/Increments": "1, 12"}
+HOLD = {"Load stepping/Increments": "2, 12"}
 TARGET = {"Adaptivity/Marking": "target error", "Adaptivity/Target error": 1e-9}  # all cells are split
 
 
@@ -58,7 +59,7 @@ def paths():
     for loads in ("force", "displacement"):
         for level in (0, 1, 2):
             yield f"split {level} from the start", "graded_" + loads, refined(level)
-        for when, interval in (("", 4), (", early", 1)):
+        for when, interval in (("", 4), (", early", 2)):
             yield ("split 2 in mid-path" + when, "graded_" + loads,
                    {**TARGET, **HOLD, "Adaptivity/Interval": interval, "Adaptivity/Maximum level": 2})  # fmt: skip
         for cycles in (2, 3):
@@ -83,7 +84,7 @@ def radii(surface):
 
 
 def jumps(run):
-    """Of each new mesh: increment, time, per cent of the log, and force and radii before and after where the load is held."""
+    """Of each new mesh: increment, time, per cent of the log, force and radii before and after: the next increment holds the load."""
     found, rows, increment = [], {int(row["increment"]): row for row in run.contact()}, 0
     for line in run.log.splitlines():
         if match := re.match(r"Increment (\d+),", line):
@@ -93,8 +94,7 @@ def jumps(run):
             for row in (rows[increment], rows[increment + 1]):
                 force = [2 * row["slave force " + component] for component in "xyz"]
                 states.append(force + radii(run.surface(row["time"])))
-            held = increment % 2 == 0 and "1, 12" in HOLD.values()
-            found.append([increment, rows[increment]["time"], float(match.group(1)), states if held else None])
+            found.append([increment, rows[increment]["time"], float(match.group(1)), states])
     return found
 
 
@@ -129,6 +129,9 @@ def all_runs():
     for mesh, prefix in ((boxes, ""), (graded, "graded_")):
         case.write(prefix + "force", mesh, case.BY_FORCE)
         case.write(prefix + "displacement", mesh, case.BY_DISPLACEMENT)
+    if "--paths" in sys.argv:
+        with open(KEPT) as file:
+            return {"series": json.load(file)["series"], "paths": [measure(*keys) for keys in paths()]}
     return {"series": [measure(*keys) for keys in series()], "paths": [measure(*keys) for keys in paths()]}
 
 
@@ -137,13 +140,12 @@ def percent(value, digits=2):
 
 
 def main():
-    kept = os.path.join(common.SCRATCH, "adaptivity", "cattaneo_mindlin.json")
     if "--report" in sys.argv:
-        with open(kept) as file:
+        with open(KEPT) as file:
             found = json.load(file)
     else:
         found = all_runs()
-        with open(kept, "w") as file:
+        with open(KEPT, "w") as file:
             json.dump(found, file)
     report(found)
 
@@ -162,10 +164,8 @@ def report(found):
     first = common.table(os.path.join(common.SCRATCH, "part.md"), header + ["F / applied", "shift"], rows)
 
     rows, changes = [], []
-    start = {}
+    start = {(run["loads"], run["name"]): run for run in found["paths"] if "mid-path" not in run["name"]}
     for run in found["paths"]:
-        if "from the start" in run["name"] and "mid-path" not in run["name"]:
-            start[run["loads"], run["name"]] = run
         if not run["converged"]:
             rows.append([run["loads"], run["name"], "", f"{run['cpu']:.1f}", "did not converge"] + [""] * 10)
             continue
@@ -175,19 +175,17 @@ def report(found):
                      percent(run["pressure"], 1), percent(run["shear"], 1), f"{run['closed']:.3f}", f"{run['stick']:.3f}",
                      " / ".join(map(str, run["counts"])), *against_start(run, start)])  # fmt: skip
         for increment, time, logged, states in run["jumps"]:
+            (x, y, z, closed, stick), (x2, y2, z2, closed2, stick2) = states
             line = [run["loads"].replace("graded_", ""), run["name"], f"{max(0, time - 1):.3f}", f"{logged:.3g} %"]
-            if states:
-                (x, y, z, closed, stick), (x2, y2, z2, closed2, stick2) = states
-                line += [percent((z2 - z) / z, 3), percent((x2 - x) / x, 3), percent((y2 - y) / z, 2)]
-                line += [f"{closed:.3f} -> {closed2:.3f}", f"{stick:.3f} -> {stick2:.3f}"]
-                line += [other_meshes(run, start, time, states)]
-            changes.append(line + [""] * (10 - len(line)))
+            line += [percent((z2 - z) / z, 3), percent((x2 - x) / x, 3) if time > 1 else "", percent((y2 - y) / z, 2)]
+            line += [f"{closed:.3f} -> {closed2:.3f}", other_meshes(run, start, time, states)]
+            changes.append(line)
     header = ["loads", "mesh", "unknowns", "CPU s", "F", "Q", "shift", "L2 error of p", "L2 error of q", "closed radius"]
     second = common.table(os.path.join(common.SCRATCH, "part.md"), header +
                           ["stick radius", "open / slip / stick", "p differs", "q differs", "statuses differ"], rows)  # fmt: skip
     header = ["loads", "mesh", "t - 1", "log", "of F", "of Q", "of the reaction of the symmetry plane / F"]
     third = common.table(os.path.join(common.SCRATCH, "part.md"),
-                         header + ["closed radius", "stick radius", "F, Q of the new mesh from the start"], changes)  # fmt: skip
+                         header + ["closed radius", "F, Q against the new mesh from the start"], changes)  # fmt: skip
     with open(os.path.join(HERE, "cattaneo_mindlin.md"), "w") as file:
         file.write(TEXT.format(first=first, second=second, third=third))
 
@@ -223,11 +221,11 @@ def other_meshes(run, start, time, states):
     """By how much F and Q after the change differ from those of a run from the start on the same mesh."""
     if "split" not in run["name"]:
         return ""
-    level = [jump[0] for jump in run["jumps"]].index(next(j[0] for j in run["jumps"] if j[1] == time)) + 1
-    other = start.get((run["loads"], f"split {level} from the start"))
-    after = min((row for row in other["force"]), key=lambda row: abs(row[0] - time - 1 / 12))
-    x, _, z, _, _ = states[1]
-    return f"{percent(z / (2 * after[3]) - 1, 3)}, {percent(x / (2 * after[1]) - 1, 3)}"
+    level = [jump[1] for jump in run["jumps"]].index(time) + 1
+    other = start[run["loads"], f"split {level} from the start"]["force"]
+    _, x, _, z = min(other, key=lambda row: abs(row[0] - time))
+    after = states[1]
+    return f"{percent(after[2] / (2 * z) - 1, 3)}, " + (percent(after[0] / (2 * x) - 1, 2) if time > 1 else "")
 
 
 TEXT = """## Partial slip on adaptive meshes

@@ -14,7 +14,7 @@ SIZE, BLOCK = 8.0, 9.0
 FORCE = 4 * YOUNG / 2 / (3 * RADIUS)  # of the full model: contact radius 1
 RATIO = 0.5  # tangential force over friction times normal force
 # six steps; of twelve increments every other one holds the load, and shows what a new mesh has changed
-STEPS = "floor(6*min(max(t-1,0),1)+0.5+1e-6)/6"
+STEPS = "floor(6*min(max(t-1,0),1)+1e-6)/6"
 APPROACH, SHIFT = 0.0104, 0.0012  # about the same by displacement
 
 
@@ -100,7 +100,7 @@ end
 """
 
 
-def write(name, mesh_file, loads, increments="1, 6"):
+def write(name, mesh_file, loads, increments="2, 6"):
     bodies = "".join(
         f"""subsection Body {number}
   set Name       = {body}
