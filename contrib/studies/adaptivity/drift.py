@@ -5,8 +5,8 @@ Writes drift.md, drift.png.
     drift.py [--report]     (--report: from the runs that are there)
 
 Cases: prm/plate_on_rigid_plane.prm (loads by tractions; stick, slip and open), and partial slip of cattaneo_mindlin.py, with
-forces and with displacements that are held. Meshes change after every increment; what is compared are the times at which the
-mesh is the same.
+forces and with displacements that are held. Meshes change after every increment. Drift is the difference between means over
+six increments at the beginning (5 to 10) and at the end.
 """
 
 import json
@@ -22,11 +22,11 @@ sys.path.insert(0, HERE)
 import common  # noqa: E402
 import partial_slip_case as case  # noqa: E402
 
-CYCLES = 20
+CHANGES = 42  # a cycle is two of them: cells are split, and joined again
 MERGED = {f"{loop} loop/Mode": "newton" for loop in ("Geometry", "Threshold", "Status")}
-# cells that have just been split have small errors and are joined again, those that have just been joined are split
-TURNS = {"Adaptivity/Interval": 1, "Adaptivity/Maximum level": 1, "Adaptivity/Refine fraction": 0.5,
-         "Adaptivity/Coarsen fraction": 0.5}  # fmt: skip
+# Refine and Coarsen fraction. Cells that have just been split have small errors and are joined again, those that have just
+# been joined are split: with the first pair about the same few cells in turn, with the last one many, and not the same ones.
+FRACTIONS = ((0.5, 0.5), (0.6, 0.4), (0.8, 0.19))
 
 
 def write_plate():
@@ -35,25 +35,32 @@ def write_plate():
     return common.write_case("adaptivity/drift_plate", text.replace("e7*t", "e7*min(t,1)"))
 
 
+def turns(refine, coarsen):
+    return {"Adaptivity/Interval": 1, "Adaptivity/Maximum level": 1, "Adaptivity/Refine fraction": refine,
+            "Adaptivity/Coarsen fraction": coarsen, "Output/VTU interval": 0}  # fmt: skip
+
+
 def cases():
     plate = write_plate()
-    held = {"Load stepping/Interval ends": "1, 2", "Load stepping/Increments": f"1, {2 * CYCLES + 6}"}
-    yield "plate", plate, {**TURNS, **held, "Output/VTU interval": 0}
+    held = {"Load stepping/Interval ends": "1, 2", "Load stepping/Increments": f"1, {CHANGES}"}
+    for fractions in FRACTIONS:
+        yield "plate", fractions, plate, {**turns(*fractions), **held}
     graded = case.graded()
-    held = {"Load stepping/Interval ends": "1, 2, 3", "Load stepping/Increments": f"1, 3, {2 * CYCLES + 6}"}
-    for name, loads in (("force", case.BY_FORCE), ("displacement", case.BY_DISPLACEMENT)):
+    held = {"Load stepping/Interval ends": "1, 2, 3", "Load stepping/Increments": f"1, 1, {CHANGES}"}
+    once = {"Body 1/Global refinement": 1, "Body 2/Global refinement": 1}
+    for name, loads, fractions in (("displacement", case.BY_DISPLACEMENT, (0.8, 0.19)), ("force", case.BY_FORCE, (0.5, 0.5))):
         prm = case.write("graded_" + name, graded, loads)
-        yield "partial slip, " + name, prm, {**TURNS, **held, "Body 1/Global refinement": 1, "Body 2/Global refinement": 1,
-                                              "Output/VTU interval": 0}  # fmt: skip
+        yield "partial slip, " + name, fractions, prm, {**turns(*fractions), **held, **once}
 
 
-def measure(name, prm, keys):
-    run = common.run(prm, re.sub(r"[ ,]+", "_", "adaptivity/drift " + name), {**MERGED, **keys})
+def measure(name, fractions, prm, keys):
+    folder = re.sub(r"[ ,]+", "_", f"adaptivity/drift {name} {fractions[0]}")
+    run = common.run(prm, folder, {**MERGED, **keys})
     rows = [[row["increment"], row["time"], row["slave force x"], row["slave force y"], row["slave force z"],
              row["open nodes"], row["slip nodes"], row["stick nodes"]] for row in run.contact()]  # fmt: skip
     cells = [int(n) for n in re.findall(r"(\d+) unknowns, \d+ slave nodes$", run.log, re.M)]
     jumps = [float(jump) for jump in re.findall(r"the contact force of contact changes by (\S+) %", run.log)]
-    return {"name": name, "converged": run.converged, "cpu": run.cpu, "rows": rows, "unknowns": cells, "jumps": jumps,
+    return {"name": name, "fractions": fractions, "converged": run.converged, "cpu": run.cpu, "rows": rows, "unknowns": cells, "jumps": jumps,
             "failed": run.log.count("no equilibrium on the new mesh")}  # fmt: skip
 
 
@@ -66,11 +73,46 @@ def main():
         found = [measure(*keys) for keys in cases()]
         with open(kept, "w") as file:
             json.dump(found, file)
-    for run in found:
-        print(run["name"], run["converged"], f"{run['cpu']:.1f}", run["unknowns"], run["jumps"])
-        for row in run["rows"]:
-            print("  ", row)
+    report(found)
 
+
+def resultants(run):
+    """Normal force, friction force and sticking nodes of all increments with the full load."""
+    plate = run["name"] == "plate"
+    rows = [row for row in run["rows"] if row[1] >= (1 if plate else 2)]
+    return np.array([[row[3 if plate else 4], abs(row[2]), row[7]] for row in rows])
+
+
+def report(found):
+    rows = []
+    for run in found:
+        values, last = resultants(run), run["unknowns"][-6:]
+        start, early, late = values[0], values[4:10].mean(axis=0), values[-6:].mean(axis=0)
+        drift = [f"{100 * (late[i] / early[i] - 1):+.3f} %" for i in range(3)]
+        rows.append([run["name"], "{} / {}".format(*run["fractions"]), f"{min(last)} ... {max(last)}", len(run["jumps"]),
+                     f"{run['cpu']:.0f}", f"{max(run['jumps']):.2f} %", f"{start[0]:.6g}, {start[1]:.6g}",
+                     f"{late[0]:.6g}, {late[1]:.6g}", *drift])  # fmt: skip
+    header = ["case", "Refine / Coarsen fraction", "unknowns in turn", "changes of the mesh", "CPU s", "largest change in the log"]
+    header += ["F, Q before", "F, Q at the end", "drift of F", "drift of Q", "drift of the sticking nodes"]
+    text = common.table(os.path.join(common.SCRATCH, "part.md"), header, rows)
+    with open(os.path.join(HERE, "drift.md"), "w") as file:
+        file.write(TEXT.format(table=text))
+    figure, axes = common.figure(6.5, 4.0)
+    for run in found:
+        friction = resultants(run)[:, 1]
+        axes.plot(friction / friction[0], label=f"{run['name']}, {run['fractions'][0]} / {run['fractions'][1]}")
+    axes.set_xlabel("changes of the mesh at constant load")
+    axes.set_ylabel("friction force / before")
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8)
+    figure.savefig(os.path.join(HERE, "drift.png"), dpi=120)
+
+
+TEXT = """## Drift at constant load
+
+{table}
+![Friction force over the changes of the mesh](drift.png)
+"""
 
 if __name__ == "__main__":
     main()
