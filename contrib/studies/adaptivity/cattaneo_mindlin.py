@@ -241,7 +241,7 @@ By force; uniform in one increment each for pressing and shearing, adaptive in o
 level and a change of the mesh after each of the first two increments. L2 errors of pressure and shear traction over the slave
 surface against the theory for the computed forces. The adaptive Q1 mesh of level 3 has two thirds of the error of the uniform one with 26 times
 the unknowns, for a tenth of its CPU. Q2 does worse at equal unknowns, as in the study of the schemes with coarse contacts. Q2
-uniform 3 was stopped after three CPU minutes in its first increment, where the block hangs on one sticking node and the linear
+uniform 3 was stopped after three CPU minutes in its first increment, where the bodies hang on one sticking node and the linear
 solver needed 512 iterations once.
 
 {first}
@@ -256,7 +256,7 @@ p, q and statuses are compared with the finest mesh from the start, at the nodes
 At the end the resultants, the radii and the statuses of nearly all nodes are those of the same mesh from the start, nearer
 than those of the next coarser mesh: by displacement Q is 0.7 % less (the coarser mesh: 3.5 % more). **The shear traction is not:** it
 differs by 16 to 20 % where the coarser mesh from the start differs by 10 to 13 %, alternating in sign from node to node, and its
-error is half as large again as it need be. It does not go away with smaller steps. What is carried over is where the
+error is half as large again as from the start. What is carried over is where the
 surfaces stick: the coarse mesh sticks on average over its faces, its interpolated relative displacement is not zero at the new
 nodes, and these stick where they are. With the same mesh on both sides (nodes on nodes, one split, by force, all sticking) the
 difference is 0.3 % instead of 7 %.
@@ -268,8 +268,8 @@ difference is 0.3 % instead of 7 %.
   the log has the norm of the change of the whole vector, and the y component of the force on half a contact is a matter of the mesh.
 - **By displacement** F changes by the stiffness of the mesh alone: afterwards it is that of the new mesh from the start to 0.005 %.
   Above 0.5 % it is discretisation: 4.4 and 2.0 % with these meshes, 0.3 % and less once cells are small.
-- By displacement **Q falls by 12 and 6 %**, to 9 and 5 % below the new mesh from the start; the difference between the meshes would be
-  a few per cent. This part is the transfer: the slip that the coarse mesh has at the edge of the contact is spread over
+- By displacement **Q falls by 12 and 6 %**, to 9 and 5 % below the new mesh from the start; the meshes from the start
+  differ by 3 % at these times. The rest is the transfer: the slip that the coarse mesh has at the edge of the contact is spread over
   nodes that should stick. It shrinks while the load goes on, to the 0.7 % above, and with the cells: 0.3, 0.1 and 0.02 % in the
   last steps of the local meshes.
 
