@@ -246,18 +246,17 @@ Quarter of an elastic half space (size 16 a, exact displacements of a concentrat
 against that of the exact force at the slave nodes with r < 0.9 a, weighted with their areas. CPU contains 0.5 s for the start of the program.
 
 {table}
-- Punch = plane, slave faces up to r = a: the force converges with order 1 on uniform meshes (the singularity), Q1 as Q2. Adaptive Q1 has
-  the error of the uniform mesh with 5 times (level 4) to 10 times the unknowns at about the same CPU; adaptive Q2 gets below 0.1 % with 12 177 unknowns
-  and 4.4 s, where the uniform one has 1 % with 153 387 and 12.6 s. The pressure, too, is four times better with Q2 there; Q1 does not get below 5 %: the error
-  sits at r near 0.9 a, where adaptive cells are no smaller than uniform ones.
-- **Q2 adaptive 1 and 2 are wrong**: force too small, pressure off by 63 and 17 %. The rim of the slave region is the edge of a larger face
-  outside of it. The node in the middle of that edge belongs to no slave face, the nodes on the fine side follow it, and so it carries no
-  multiplier and goes through the plane (displacement 0.75 of the approach). With finer levels the mesh is refined on both sides of the
-  rim and this does not happen. Q1 has no such node.
-- Punch = body, whose rim cuts slave faces: nodes beyond the rim are loaded on slivers of their faces and get pressures of up to 90 times the mean,
-  nodes inside open. Its uniform meshes have the force, not the pressure. On **adaptive ones the error of the force stays at 9 %**: the
-  indicator takes those nodal pressures as they are ("estimated error 778 %") and refines there and nowhere else.
-  Put the edge of a punch on edges of faces, or make the punch the slave.
+- Punch = plane, slave faces up to r = a: the force converges with order 1 on uniform meshes (the singularity), Q1 as Q2.
+  Adaptive Q1 has the force of uniform meshes with 3 (level 4) and 8 times (level 5) the unknowns, at about the same CPU: five repetitions,
+  each of a small problem. The error of the pressure is 5 % on nearly all meshes, most of it between 0.85 and 0.9 a.
+- **Q2 adaptive is wrong on part of the rim, or all of it:** force too small, pressure off by up to 63 %; that of level 4 is good by accident, two of four stretches of the
+  rim are not in contact. The rim of the slave region is the edge of a larger face outside of it. The node in the middle of that edge
+  belongs to no slave face, the nodes on the fine side follow it, and so it carries no multiplier and goes through the plane
+  (by 5 to 25 % of the approach). Q1 has no such node. Without a mesh file: a block 2 x 1 x 1 of two cells, Degree = 2,
+  Local refinement = 1 and Slave where for x < 1, pressed by a plane: the force is 1.102, and 1.274 with all cells split.
+- Punch = body, whose rim cuts slave faces: nodes beyond the rim are loaded on slivers of their faces and get pressures of up to 90
+  times the mean, nodes inside open. The uniform meshes have the force, not the pressure. On the **adaptive ones the error of the
+  force stays at 9 %**: the indicator takes those nodal pressures as they are ("estimated error 778 %" in the log) and goes on refining there.
 
 ![Errors](flat_punch.png)
 """
