@@ -2,7 +2,7 @@
 """Drift of a state with stick and slip while cells are split and joined again, twenty times, at constant load.
 Writes drift.md, drift.png.
 
-    drift.py [--report]     (--report: from the runs that are there)
+    drift.py [--report | --once]     (--report: from the runs that are there; --once: only the second table is made anew)
 
 Cases: prm/plate_on_rigid_plane.prm (loads by tractions; stick, slip and open), and partial slip of cattaneo_mindlin.py, with
 forces and with displacements that are held. Meshes change after every increment. Drift is the difference between means over
@@ -53,15 +53,33 @@ def cases():
         yield "partial slip, " + name, fractions, prm, {**turns(*fractions), **held, **once}
 
 
+ONCE = {"Adaptivity/Interval": 1, "Adaptivity/Maximum level": 1, "Adaptivity/Marking": "target error",
+        "Adaptivity/Target error": 1e-9, "Output/VTU interval": 0}  # fmt: skip
+
+
+def split_once(friction, scheme):
+    """All cells of the plate are split at constant load: friction force before, after, and on that mesh from the start."""
+    prm = os.path.join(common.SCRATCH, "adaptivity", "drift_plate.prm")
+    keys = {"Load stepping/Interval ends": "1, 2", "Load stepping/Increments": "1, 1", "Contact pair 1/Scheme": scheme,
+            "Contact pair 1/Friction coefficient": friction}  # fmt: skip
+    if scheme == "integration point":
+        keys["Linear solver/Type"] = "direct"
+    fine = {"Body 1/Generator arguments": "64,20,2 : 0,0,0 : 0.04,0.04,0.001 : true"}
+    name = f"plate once {friction} {scheme} "
+    mid, start = measure(name + "mid", (), prm, {**ONCE, **keys}), measure(name + "start", (), prm, {**keys, **fine})
+    before, after = (abs(row[2]) for row in mid["rows"])
+    return [friction, scheme, before, after, abs(start["rows"][-1][2]), mid["jumps"][0]]
+
+
 def measure(name, fractions, prm, keys):
-    folder = re.sub(r"[ ,]+", "_", f"adaptivity/drift {name} {fractions[0]}")
+    folder = re.sub(r"[ ,]+", "_", f"adaptivity/drift {name} " + " ".join(map(str, fractions)))
     run = common.run(prm, folder, {**MERGED, **keys})
     rows = [[row["increment"], row["time"], row["slave force x"], row["slave force y"], row["slave force z"],
              row["open nodes"], row["slip nodes"], row["stick nodes"]] for row in run.contact()]  # fmt: skip
     cells = [int(n) for n in re.findall(r"(\d+) unknowns, \d+ slave nodes$", run.log, re.M)]
     jumps = [float(jump) for jump in re.findall(r"the contact force of contact changes by (\S+) %", run.log)]
-    return {"name": name, "fractions": fractions, "converged": run.converged, "cpu": run.cpu, "rows": rows, "unknowns": cells, "jumps": jumps,
-            "failed": run.log.count("no equilibrium on the new mesh")}  # fmt: skip
+    return {"name": name, "fractions": fractions, "converged": run.converged, "cpu": run.cpu, "rows": rows, "unknowns": cells,
+            "jumps": jumps, "failed": run.log.count("no equilibrium on the new mesh")}  # fmt: skip
 
 
 def main():
@@ -70,7 +88,9 @@ def main():
         with open(kept) as file:
             found = json.load(file)
     else:
-        found = [measure(*keys) for keys in cases()]
+        found = json.load(open(kept)) if "--once" in sys.argv else [measure(*keys) for keys in cases()]
+        found = [run for run in found if isinstance(run, dict)]
+        found.append([split_once(mu, scheme) for mu in (0.2, 0.5, 1) for scheme in ("averaged", "integration point")])
         with open(kept, "w") as file:
             json.dump(found, file)
     report(found)
@@ -84,7 +104,7 @@ def resultants(run):
 
 
 def report(found):
-    rows = []
+    rows, (*found, once) = [], found
     for run in found:
         values, last = resultants(run), run["unknowns"][-6:]
         start, early, late = values[0], values[4:10].mean(axis=0), values[-6:].mean(axis=0)
@@ -95,8 +115,12 @@ def report(found):
     header = ["case", "Refine / Coarsen fraction", "unknowns in turn", "changes of the mesh", "CPU s", "largest change in the log"]
     header += ["F, Q before", "F, Q at the end", "drift of F", "drift of Q", "drift of the sticking nodes"]
     text = common.table(os.path.join(common.SCRATCH, "part.md"), header, rows)
+    rows = [[mu, scheme, f"{before:.1f}", f"{after:.1f}", f"{start:.1f}", f"{100 * (after / before - 1):+.2f} %",
+             f"{100 * (start / before - 1):+.2f} %", f"{logged:.2f} %"] for mu, scheme, before, after, start, logged in once]  # fmt: skip
+    header = ["friction coefficient", "scheme", "Q before", "Q after", "Q from the start", "change", "from the start", "log"]
+    second = common.table(os.path.join(common.SCRATCH, "part.md"), header, rows)
     with open(os.path.join(HERE, "drift.md"), "w") as file:
-        file.write(TEXT.format(table=text))
+        file.write(TEXT.format(table=text, once=second))
     figure, axes = common.figure(6.5, 4.0)
     for run in found:
         friction = resultants(run)[:, 1]
@@ -120,12 +144,23 @@ over increments 5 to 10 to those over the last six.
 - Partial slip by displacement loses 0.6 % of Q in the first three changes (the stiffness of the new meshes is part of it), and
   then 0.05 %.
 - **With many cells that are never quite the same (0.8 / 0.19) the friction force of the plate goes down all the time: 2.8 % in 42
-  changes**, not yet at an end. It does not depend on the mesh otherwise: 1401.6 N with 2 202 unknowns, 1401.7 N with all cells split.
-  The nodal scheme has the same drift. Each change moves the tangential tractions a little (see cattaneo_mindlin.md), those at the
-  limit slip, and they slip one way. With the friction coefficient 0.5 instead of 1 most of it happens at once: Q is 947.8 N, 926.9 N after
-  the first change of the mesh and 925.4 N after the last, where a mesh with all cells split has 944.6 N from the start.
+  changes**, not yet at an end, though it is the same on all meshes from the start: 1401.6 N with 2 202 unknowns, 1401.7 N
+  with all cells split. The nodal scheme has the same drift. With the friction coefficient 0.5 it has gone down by 2.2 % after the first
+  change of the mesh, and by 2.4 % after the last.
 - Numbers of sticking nodes rise: nodes at the limit that do not slide any more may have either status. They also differ with
   the number of nodes of the meshes.
+
+## One change at constant load
+
+All cells of the plate are split once; its loads are tractions, and F = 2000 N is given.
+
+{once}
+**Up to 5 % of the friction force are lost where the discretisation accounts for 1 %.** On the coarse mesh nearly all closed nodes slide, and at
+the limit; afterwards some of the new ones stick. The interpolated displacement is not that of equilibrium between the old nodes.
+What new nodes move on the way there is taken for slip; it goes both ways, and where it goes back the friction turns.
+Friction tractions that were kept, as given loads, until there is equilibrium on the new mesh, and slip counted from there,
+would avoid this, the zigzag of cattaneo_mindlin.md, and the drift; that has not been tried. The number in the log is the change relative to
+the whole contact force, of which friction is a part only.
 
 ![Friction force over the changes of the mesh](drift.png)
 """
