@@ -160,7 +160,7 @@ limit (0.2, averaged). After the change 23 are below it, most of them new nodes,
 0.5, 0.7, 0.8 of it from x = 0 on. The interpolated displacement is not that of equilibrium, and where new nodes move back on the way
 there, friction is unloaded.
 Friction tractions that were kept, as given loads, until there is equilibrium on the new mesh, and slip counted from there,
-would avoid this, the zigzag of cattaneo_mindlin.md, and the drift; that has not been tried. The number in the log is the change relative to
+should avoid this, the zigzag of cattaneo_mindlin.md, and the drift; that has not been tried. The number in the log is the change relative to
 the whole contact force, of which friction is a part only.
 
 ![Friction force over the changes of the mesh](drift.png)
