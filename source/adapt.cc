@@ -144,11 +144,7 @@ namespace Nodus
   {
     const auto before = resultants;
     impose(path.time());
-    pair_surfaces();
-    // where nothing else holds a body, sites that stick have to
-    status->hold_friction(Status::Hold::all);
-    const bool free = !free_motions(OwnedNodes(dof_handler, *mapping)).empty();
-    for (const Status::Hold hold : {free ? Status::Hold::slipping : Status::Hold::all, Status::Hold::none})
+    for (const Status::Hold hold : {Status::Hold::slipping, Status::Hold::none})
       try
       {
         motions_unknown = false;
@@ -163,7 +159,7 @@ namespace Nodus
         const bool last = hold == Status::Hold::none;
         console.remark(std::string("no equilibrium on the new mesh: ") + failure.what() +
                        (last ? "; the next increment goes on from the state as it was taken over"
-                             : "; again with sites that stick and slip"));
+                             : "; again with slip that may turn"));
         if (last)
           return;
       }

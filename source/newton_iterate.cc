@@ -275,21 +275,12 @@ namespace Nodus
       before[k] = status->friction(k) ? status->threshold(k) : 0.;
     freeze_threshold();
 
-    // Sticking nodes keep their friction traction mu lambda Lambda: as unknown of the iteration it is linear. So do
-    // those that stuck before the mesh changed, up to the limit.
+    // Sticking nodes keep their friction traction mu lambda Lambda: as unknown of the iteration it is linear.
     for (const ContactPoint &point : weights.points())
-    {
-      const unsigned int k = point.slaves[0];
-      if (point.slaves.size() > 1 || !surfaces->is_owned(k) || before[k] == 0. || !status->friction(k) ||
-          !(status->stick(k) || (status->holds_friction(k) && status->kept(k)[1] != 0.)))
-        continue;
-      std::array<double, 2> Lambda = state.Lambda[k];
-      for (double &component : Lambda)
-        component *= before[k] / status->threshold(k);
-      const double excess = status->stick(k) ? 1. : std::max(1., std::hypot(Lambda[0], Lambda[1]));
-      for (unsigned int i = 0; i < 2; ++i)
-        solution.block(2)(2 * surfaces->multiplier(k) + i) = Lambda[i] / excess;
-    }
+      if (const unsigned int k = point.slaves[0]; point.slaves.size() == 1 && surfaces->is_owned(k) &&
+                                                  before[k] != 0. && status->friction(k) && status->stick(k))
+        for (unsigned int i = 0; i < 2; ++i)
+          solution.block(2)(2 * surfaces->multiplier(k) + i) = state.Lambda[k][i] * before[k] / status->threshold(k);
     solution.block(2).compress(dealii::VectorOperation::insert);
     gather_state();
   }

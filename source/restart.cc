@@ -154,17 +154,6 @@ namespace Nodus
         ++end;
       return end - first;
     }
-
-    /// Whether the friction direction of a slave node on a new mesh is a mean with the pressures as weights: that of
-    /// the sum of the tractions, also beside nodes that are open. Pairs that pull have no such weights; those of
-    /// integration points need none, whose traction is a product of interpolated fields.
-    bool weighted_by_pressure(const std::vector<ContactPairParameters> &pairs,
-                              const ContactSurfaces                    &surfaces,
-                              const unsigned int                        slave)
-    {
-      const unsigned int pair = surfaces.pair(slave);
-      return pairs[pair].contact_law == ContactPairParameters::ContactLaw::unilateral && !surfaces.has_points(pair);
-    }
   } // namespace
 
   /// Of the slave nodes; those of the integration point scheme have the mean of the points around them. Right at own
@@ -234,13 +223,10 @@ namespace Nodus
       const DoFIndex  multiplier = surfaces->multiplier(k);
       double         *value      = std::copy(site.begin(), site.end(), state.begin());
       *value++                   = committed.block(1)(multiplier);
-      const double weight        = in_space && weighted_by_pressure(parameters.contact_pairs, *surfaces, k)
-                                       ? -committed.block(1)(multiplier)
-                                       : 1.;
-      Vector3      Lambda;
+      Vector3 Lambda;
       for (unsigned int i = 0; i < 2; ++i)
         if (const double component = committed.block(2)(2 * multiplier + i); in_space)
-          Lambda += weight * component * committed_pairing[k].tangent[i];
+          Lambda += component * committed_pairing[k].tangent[i];
         else
           Lambda[i] = component;
       value    = std::copy(Lambda.begin_raw(), Lambda.end_raw(), value);
@@ -280,9 +266,6 @@ namespace Nodus
       Vector3 Lambda;
       for (unsigned int c = 0; c < dim; ++c)
         Lambda[c] = *value++;
-      if (const double pressure = -committed.block(1)(multiplier);
-          in_space && weighted_by_pressure(parameters.contact_pairs, *surfaces, k))
-        Lambda *= Lambda.norm() > pressure ? 1. / Lambda.norm() : pressure > 0. ? 1. / pressure : 0.;
       committed_area[k] = *value++;
       for (Vector3 &tangent : tangents[k])
         for (unsigned int c = 0; c < dim; ++c)

@@ -351,8 +351,7 @@ namespace Nodus
                              });
       if (unsymmetric)
         for (const PointJump &jump : jumps)
-          if ((jump.slip != 0. && !(held && n_nodes == 1 && status_.kept(jump.site)[1] != 0.)) ||
-              (jump.stick != 0. && n_nodes > 1))
+          if (jump.slip != 0. || (jump.stick != 0. && n_nodes > 1))
             for (const auto &[k, derivative] : d_threshold[jump.site])
               for (unsigned int i = 0; i < n_unknowns; ++i)
                 if (r_t(i) != 0.)
