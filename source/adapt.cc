@@ -144,7 +144,7 @@ namespace Nodus
   {
     const auto before = resultants;
     impose(path.time());
-    for (const Status::Hold hold : {Status::Hold::slipping, Status::Hold::none})
+    for (const bool hold : {true, false})
       try
       {
         motions_unknown = false;
@@ -156,18 +156,17 @@ namespace Nodus
       {
         diagnosis.end_attempt(failure.what());
         roll_back();
-        const bool last = hold == Status::Hold::none;
         console.remark(std::string("no equilibrium on the new mesh: ") + failure.what() +
-                       (last ? "; the next increment goes on from the state as it was taken over"
-                             : "; again with slip that may turn"));
-        if (last)
+                       (!hold ? "; the next increment goes on from the state as it was taken over"
+                              : "; again with slip that may turn"));
+        if (!hold)
           return;
       }
     committed_applied = applied_forces();
     for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
       committed_site_force[s] = -residual.jump[s];
     commit();
-    status->hold_friction(Status::Hold::none);
+    status->hold_friction(false);
     update_results();
     const auto change = [](const Vector3 &force, const Vector3 &force_before)
     { return force_before.norm() > 0. ? 100. * (force - force_before).norm() / force_before.norm() : 0.; };

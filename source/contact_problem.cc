@@ -129,8 +129,10 @@ namespace Nodus
   void ContactProblem::Implementation::begin_on_mesh()
   {
     solid->make_sparsity(system.bulk);
+    linear_solver_parameters      = parameters.linear_solver;
+    linear_solver_parameters.type = chosen_solver(parameters, dof_handler.n_dofs());
     linear_solver =
-        make_linear_solver(parameters.linear_solver, surfaces->layout(), OwnedNodes(dof_handler, *mapping).X);
+        make_linear_solver(linear_solver_parameters, surfaces->layout(), OwnedNodes(dof_handler, *mapping).X);
     linear_solver->set_profile(&profile);
     direct_solver.reset();
     if (!parameters.output.write_vtu)

@@ -96,10 +96,11 @@ namespace Nodus
     residual = contact->assemble(state, system);
 
     FailureEvidence evidence;
-    evidence.kind        = failure.kind();
-    evidence.message     = failure.what();
-    evidence.converged   = path.time();
-    evidence.force_scale = force_scale;
+    evidence.kind          = failure.kind();
+    evidence.message       = failure.what();
+    evidence.converged     = path.time();
+    evidence.linear_solver = linear_solver_parameters.type;
+    evidence.force_scale   = force_scale;
     const OwnedNodes nodes(dof_handler, *mapping);
     find_worst_nodes(nodes, evidence);
     find_changing_sites(evidence);

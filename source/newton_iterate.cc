@@ -333,7 +333,7 @@ namespace Nodus
     }
     catch (const SolverFailure &failure)
     {
-      if (parameters.linear_solver.type == LinearSolverParameters::Type::direct ||
+      if (linear_solver_parameters.type == LinearSolverParameters::Type::direct ||
           dof_handler.n_dofs() > largest_direct)
         throw;
       console.remark(std::string(failure.what()) + "; this correction comes from the direct solver");

@@ -37,7 +37,8 @@ namespace Nodus
     const Names<LoopParameters::Mode> mode_names = {{LoopParameters::Mode::fixed_point, "fixed point"},
                                                     {LoopParameters::Mode::newton, "newton"}};
 
-    const Names<LinearSolverParameters::Type> solver_names = {{LinearSolverParameters::Type::direct, "direct"},
+    const Names<LinearSolverParameters::Type> solver_names = {{LinearSolverParameters::Type::automatic, "automatic"},
+                                                              {LinearSolverParameters::Type::direct, "direct"},
                                                               {LinearSolverParameters::Type::block, "block"},
                                                               {LinearSolverParameters::Type::condensed, "condensed"}};
 
@@ -293,7 +294,8 @@ namespace Nodus
           solver_names,
           "Linear solver [-]: direct is MUMPS; condensed eliminates multipliers and held slave displacements and "
           "needs conjugate gradients with algebraic multigrid (large models); block is FGMRES on all unknowns, "
-          "for what cannot be condensed: integration points and consistent weights.");
+          "for what cannot be condensed: integration points and consistent weights. automatic takes direct for small "
+          "models and condensed, or block, for others.");
       prm.add_parameter("Tolerance",
                         solver.tolerance,
                         "Block and condensed solver: least relative residual; corrections that Newton goes on from "

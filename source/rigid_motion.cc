@@ -165,7 +165,7 @@ namespace Nodus
     S.compute_svd();
     const double largest = std::max(S.singular_value(0), stiffness_scale);
     const double least =
-        largest * (parameters.linear_solver.type == LinearSolverParameters::Type::direct ? free_fraction_direct
+        largest * (linear_solver_parameters.type == LinearSolverParameters::Type::direct ? free_fraction_direct
                                                                                          : free_fraction_iterative);
     double     forces = 0.; // of all motions, as a scale
     bool       waits  = false;

@@ -258,7 +258,10 @@ namespace Nodus
 
     p.console.line("  loops: geometry " + text_of(parameters.geometry_loop.mode) + ", threshold " +
                    text_of(parameters.threshold_loop.mode) + ", status " + text_of(parameters.status_loop.mode));
-    p.console.line("  linear solver: " + text_of(parameters.linear_solver.type));
+    const auto solver = chosen_solver(parameters, p.dof_handler.n_dofs());
+    p.console.line(
+        "  linear solver: " + text_of(solver) +
+        (solver == parameters.linear_solver.type ? "" : " (" + text_of(parameters.linear_solver.type) + ")"));
     p.console.line("  load path: " + describe(parameters.load_stepping));
     p.console.line("  results: " + parameters.output.results_folder);
   }

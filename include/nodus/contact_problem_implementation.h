@@ -165,6 +165,7 @@ namespace Nodus
     std::unique_ptr<Status>           status;
     std::unique_ptr<ContactAssembler> contact;
 
+    LinearSolverParameters        linear_solver_parameters; ///< on the mesh at hand, never automatic
     std::unique_ptr<LinearSolver> linear_solver;
     std::unique_ptr<LinearSolver> direct_solver; ///< where an iterative one has failed
     LinearSystem                  system;

@@ -275,6 +275,7 @@ namespace Nodus
   {
     enum class Type
     {
+      automatic, ///< see chosen_solver
       direct,
       block,
       condensed
@@ -338,7 +339,7 @@ namespace Nodus
     LoopParameters                           threshold_loop = {30, 1e-4, LoopParameters::Mode::newton};
     LoopParameters                           status_loop    = {30, 0., LoopParameters::Mode::newton};
     NewtonParameters                         newton;
-    LinearSolverParameters                   linear_solver;
+    LinearSolverParameters                   linear_solver = {LinearSolverParameters::Type::automatic};
     LoadSteppingParameters                   load_stepping;
     AdaptivityParameters                     adaptivity;
     OutputParameters                         output;

@@ -1,10 +1,56 @@
 #include <nodus/contact/jump_operator.h>
 
+#include <Eigen/Dense>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace Nodus
 {
+  namespace
+  {
+    /// Largest shift of a mean master point, in sizes of the surface of its slave node: of sites far from contact.
+    constexpr double largest_shift = 0.1;
+
+    /// Averaged gaps vanish in the mean alone: gaps that are left between the points, on masters that are not flat, put
+    /// the mean master point beside the normal through the slave node, and forces along that would turn the bodies. The
+    /// least change of the master weights that puts it on the normal; the distance along it stays.
+    void balance_moment(const SitePairing         &site,
+                        const double               size,
+                        const std::vector<Point>  &x,
+                        const AveragedJump::Entry *first,
+                        AveragedJump::Entry       *master,
+                        const AveragedJump::Entry *last,
+                        Vector3                   &offset)
+    {
+      Vector3 beside, mean;
+      for (const AveragedJump::Entry *e = first; e != last; ++e)
+        beside += e->weight * x[e->node];
+      for (const AveragedJump::Entry *e = master; e != last; ++e)
+        mean += x[e->node] / static_cast<double>(last - master);
+      const auto components = [&](const Vector3 &v)
+      { return Eigen::Vector2d(v * site.tangent[0], v * site.tangent[1]); };
+      Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+      for (const AveragedJump::Entry *e = master; e != last; ++e)
+      {
+        const Eigen::Vector2d d = components(x[e->node] - mean);
+        spread += d * d.transpose();
+      }
+      if (!(spread.determinant() > 1e-6 * spread.trace() * spread.trace()))
+        return; // nodes in a line
+      Eigen::Vector2d shift = components(beside);
+      shift *= std::min(1., largest_shift * size / std::max(shift.norm(), std::numeric_limits<double>::min()));
+      shift = spread.inverse() * shift;
+      for (AveragedJump::Entry *e = master; e != last; ++e)
+      {
+        const double change = -components(x[e->node] - mean).dot(shift);
+        e->weight += change;
+        offset -= change * (x[e->node] * site.normal) * site.normal;
+      }
+    }
+  } // namespace
+
   void JumpOperator::build(const std::vector<ContactPairParameters> &pairs,
                            const ContactSurfaces                    &surfaces,
                            const ContactGeometry                    &geometry,
@@ -56,6 +102,14 @@ namespace Nodus
         entries_.insert(entries_.end(), row.master.begin(), row.master.end());
         rigid_[s]      = row.rigid;
         offset_.back() = row.offset - row.rigid.x;
+        if (!row.master.empty())
+          balance_moment(pairing[s],
+                         std::sqrt(row.area),
+                         geometry.slave[p].positions(),
+                         entries_.data() + start_.back(),
+                         entries_.data() + middle_.back(),
+                         entries_.data() + entries_.size(),
+                         offset_.back());
       }
       else if (pairing[s].found && (master.found() || geometry.rigid[p] != nullptr))
       {

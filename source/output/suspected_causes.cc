@@ -480,7 +480,7 @@ namespace Nodus
       using Type            = LinearSolverParameters::Type;
       const auto    &solver = parameters.linear_solver;
       SuspectedCause cause{"the linear solver did not succeed", {evidence.message}, {}};
-      if (solver.type != Type::direct)
+      if (evidence.linear_solver != Type::direct)
       {
         cause.changes.push_back({"Linear solver/Type",
                                  text_of(solver.type),
@@ -492,7 +492,7 @@ namespace Nodus
                                  "if the residual was still falling"});
       }
       else
-        cause.changes.push_back({"Linear solver/Type", "direct", "condensed", "needs less memory"});
+        cause.changes.push_back({"Linear solver/Type", text_of(solver.type), "condensed", "needs less memory"});
       causes.push_back(cause);
     }
 

@@ -66,7 +66,7 @@ namespace Nodus
     /// S_f: meaningful where friction() holds.
     bool stick(const unsigned int site) const
     {
-      return now_.stick[site] && !(hold_ == Hold::all && holds_friction(site));
+      return now_.stick[site];
     }
     /// mu lambda_s <= 0, frozen by the threshold loop.
     double threshold(const unsigned int site) const
@@ -83,22 +83,15 @@ namespace Nodus
     {
       return in_the_mean_ && can_project(surfaces_.pair(site));
     }
-    /// While equilibrium is found on a new mesh: motion that is due to the mesh alone has no friction of its own. The
-    /// friction directions stay as they were taken over, of all sites or of those that slip while the others stick.
-    /// Tied pairs go on sticking.
-    enum class Hold
-    {
-      none,
-      slipping,
-      all
-    };
-    void hold_friction(const Hold hold)
+    /// While equilibrium is found on a new mesh: motion that is due to the mesh alone has no friction of its own. Sites
+    /// that slip keep the friction direction that they were taken over with, the others stick.
+    void hold_friction(const bool hold)
     {
       hold_ = hold;
     }
     bool holds_friction(const unsigned int site) const
     {
-      return hold_ != Hold::none && pairs_[surfaces_.pair(site)].contact_law != ContactPairParameters::ContactLaw::tied;
+      return hold_ && pairs_[surfaces_.pair(site)].contact_law != ContactPairParameters::ContactLaw::tied;
     }
     /// Pairs whose consistent weights are lumped for now, to hold their laws in the mean.
     std::vector<bool> lumped() const;
@@ -286,7 +279,7 @@ namespace Nodus
     std::vector<char>                         had_friction_; ///< at the last test: the iterate knows of friction there
     bool                                      one_at_a_time_ = false, freezes_ = false, merged_ = false;
     bool                                      in_the_mean_ = false; ///< in this attempt at the increment
-    Hold                                      hold_        = Hold::none;
+    bool                                      hold_        = false;
     unsigned int                              returns_     = 0; ///< to a visited vector, in this loop
   };
 } // namespace Nodus

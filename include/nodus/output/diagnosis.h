@@ -21,10 +21,11 @@ namespace Nodus
   /// What a failure is explained from: global values, the same on every rank.
   struct FailureEvidence
   {
-    SolverFailure::Kind kind = SolverFailure::Kind::unspecified;
-    std::string         message;   ///< of the failure
-    double              converged; ///< time of the last converged state
-    std::string         state;     ///< file with the fields of this state; empty: none
+    SolverFailure::Kind          kind = SolverFailure::Kind::unspecified;
+    std::string                  message;   ///< of the failure
+    double                       converged; ///< time of the last converged state
+    LinearSolverParameters::Type linear_solver = LinearSolverParameters::Type::direct; ///< that was chosen
+    std::string                  state; ///< file with the fields of this state; empty: none
 
     /// A displacement node out of balance.
     struct Node

@@ -60,6 +60,10 @@ namespace Nodus
     Profile *profile_ = nullptr;
   };
 
+  /// What the parameters ask for; of automatic, what is faster with so many displacements.
+  LinearSolverParameters::Type chosen_solver(const Parameters &parameters, DoFIndex n_displacements);
+
+  /// @param parameters whose type is not automatic
   /// @param node_positions of the owned displacement nodes, in the order of their degrees of freedom, for the
   /// rigid-body modes
   std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverParameters &parameters,
