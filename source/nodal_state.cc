@@ -118,9 +118,6 @@ namespace Nodus
       Vector3 Lambda;
       for (unsigned int c = 0; c < dim; ++c)
         Lambda[c] = *value++;
-      // a site that slips stays on the cone, though its direction lies between those of others
-      if (in_space && surfaces->has_status(k) && sites[k][0] > 0.5 && sites[k][1] <= 0.5 && Lambda.norm() > 0.5)
-        Lambda /= Lambda.norm();
       committed_area[k] = *value++;
       for (Vector3 &tangent : tangents[k])
         for (unsigned int c = 0; c < dim; ++c)

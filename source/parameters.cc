@@ -294,8 +294,8 @@ namespace Nodus
           solver_names,
           "Linear solver [-]: direct is MUMPS; condensed eliminates multipliers and held slave displacements and "
           "needs conjugate gradients with algebraic multigrid (large models); block is FGMRES on all unknowns, "
-          "for what cannot be condensed: integration points and consistent weights. automatic takes direct for small "
-          "models and condensed, or block, for others.");
+          "for what cannot be condensed: integration points and consistent weights. automatic takes direct up to "
+          "20000 displacements, for more condensed, or block where that is needed.");
       prm.add_parameter("Tolerance",
                         solver.tolerance,
                         "Block and condensed solver: least relative residual; corrections that Newton goes on from "

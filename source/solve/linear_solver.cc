@@ -7,9 +7,9 @@ namespace Nodus
 {
   namespace
   {
-    /// Displacements up to which the direct solver is faster than the condensed one, and than the block solver
-    /// (measured: contrib/studies/scaling, "Which solver").
-    constexpr DoFIndex largest_direct = 20000, largest_direct_of_block = 60000;
+    /// Displacements up to which a direct solution costs 2.5 times the CPU of an iterative one at most (3 to 7 times
+    /// for 50000: contrib/studies/scaling/size.md), which slender bodies repay.
+    constexpr DoFIndex largest_small = 20000;
   } // namespace
 
   void BlockLayout::reinit(BlockVector &v) const
@@ -22,13 +22,13 @@ namespace Nodus
     using Type = LinearSolverParameters::Type;
     if (parameters.linear_solver.type != Type::automatic)
       return parameters.linear_solver.type;
-    bool condensable = true;
-    for (const auto &pair : parameters.contact_pairs)
-      condensable = condensable && pair.scheme != ContactPairParameters::Scheme::integration_point &&
-                    pair.weights != ContactPairParameters::Weights::consistent;
-    if (n_displacements <= (condensable ? largest_direct : largest_direct_of_block))
+    if (n_displacements <= largest_small)
       return Type::direct;
-    return condensable ? Type::condensed : Type::block;
+    for (const auto &pair : parameters.contact_pairs)
+      if (pair.scheme == ContactPairParameters::Scheme::integration_point ||
+          pair.weights == ContactPairParameters::Weights::consistent)
+        return Type::block;
+    return Type::condensed;
   }
 
   std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverParameters &parameters,

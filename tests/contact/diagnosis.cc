@@ -180,7 +180,8 @@ int main(int argc, char **argv)
     history.end       = 1.;
     history.passes    = {{"geometry", 3, 0.4, 0.01, "(1 0 0)"}};
     FailureEvidence evidence;
-    evidence.kind = kind;
+    evidence.kind          = kind;
+    evidence.linear_solver = q.linear_solver.type;
     evidence.pairs.resize(1);
     const SuspectedCause cause = suspected_causes(q, history, evidence).front();
     return cause.name + ": " + cause.changes.front().key + " = " + cause.changes.front().proposed;

@@ -32,7 +32,7 @@ int main(int argc, char **argv)
   double            cone = 0.;
   for (const auto type : {Type::direct, Type::block, Type::condensed})
   {
-    const unsigned int s    = static_cast<unsigned int>(type);
+    const unsigned int s    = static_cast<unsigned int>(type) - static_cast<unsigned int>(Type::direct);
     p.linear_solver.type    = type;
     p.output.results_folder = names[s] + "_results";
     ContactProblem problem(p, world(), log());
