@@ -23,44 +23,25 @@ namespace Nodus
     const double                               tolerance = std::max(parameters_.tolerance, relative_tolerance);
     const SaddlePointOperator                  matrix(system);
     std::unique_ptr<const BlockPreconditioner> preconditioner;
-    solutions.resize(rhs.size());
-    Report report;
-    for (unsigned int n = 0; n < rhs.size(); ++n)
+    const auto                                 iterate = [&](const BlockVector &b, BlockVector &x)
     {
-      const BlockVector b = matrix.scaled(*rhs[n]);
-      BlockVector       x, r;
-      x.reinit(b);
-      r.reinit(b);
-      const double norm_b = b.l2_norm();
-      if (!std::isfinite(norm_b))
-        throw SolverFailure("Block solver: the right-hand side holds a value that is not finite.",
-                            SolverFailure::Kind::not_finite);
-      if (norm_b > 0.)
+      if (!preconditioner)
       {
-        if (!preconditioner)
-        {
-          const auto timer = time_set_up();
-          preconditioner =
-              std::make_unique<const BlockPreconditioner>(matrix, parameters_.augmentation_factor, node_positions_);
-        }
-        const KrylovReport krylov =
-            left_gmres(matrix, *preconditioner, b, tolerance, parameters_.maximum_iterations, x);
-        report.iterations += krylov.iterations;
-        if (!(krylov.residual <= tolerance))
-        {
-          std::ostringstream message;
-          message << "Block solver: relative residual " << krylov.residual << " after " << krylov.iterations
-                  << " iterations (wanted: " << tolerance
-                  << "); use 'Type = direct' or change 'Augmentation factor' (good values lie between 1 and 10).";
-          throw SolverFailure(message.str(), SolverFailure::Kind::linear_solver);
-        }
-        matrix.vmult(r, x);
-        r.sadd(-1., 1., b);
-        if (n == 0)
-          report.relative_residual = matrix.unscaled_norm(r) / matrix.unscaled_norm(b);
+        const auto timer = time_set_up();
+        preconditioner =
+            std::make_unique<const BlockPreconditioner>(matrix, parameters_.augmentation_factor, node_positions_);
       }
-      matrix.to_solution(x, solutions[n]);
-    }
-    return report;
+      const KrylovReport krylov = left_gmres(matrix, *preconditioner, b, tolerance, parameters_.maximum_iterations, x);
+      if (!(krylov.residual <= tolerance))
+      {
+        std::ostringstream message;
+        message << "Block solver: relative residual " << krylov.residual << " after " << krylov.iterations
+                << " iterations (wanted: " << tolerance
+                << "); use 'Type = direct' or change 'Augmentation factor' (good values lie between 1 and 10).";
+        throw SolverFailure(message.str(), SolverFailure::Kind::linear_solver);
+      }
+      return krylov.iterations;
+    };
+    return matrix.solve_each(rhs, "Block solver", iterate, solutions);
   }
 } // namespace Nodus

@@ -162,51 +162,33 @@ namespace Nodus
       block_solver.set_profile(profile_);
       return block_solver.solve(system, rhs, solutions, relative_tolerance);
     }
-    solutions.resize(rhs.size());
-    Report report;
-    bool   first = true; // of those that are not zero
-    for (unsigned int n = 0; n < rhs.size(); ++n)
+    bool       first  = true; // of the right-hand sides that are not zero
+    const auto find_x = [&](const BlockVector &b, BlockVector &x)
     {
-      const BlockVector b = matrix.scaled(*rhs[n]);
-      BlockVector       x, r;
-      x.reinit(b);
-      r.reinit(b);
-      const double norm_b = b.l2_norm();
-      if (!std::isfinite(norm_b))
-        throw SolverFailure("Condensed solver: the right-hand side holds a value that is not finite.",
-                            SolverFailure::Kind::not_finite);
-      if (norm_b > 0.)
+      const bool reuse = !first || hierarchy_fits(condensation->signature(), system.layout->communicator);
+      if (!reuse)
+        make_multigrid(system, *condensation);
+      unsigned int iterations;
+      try
       {
-        const bool reuse = !first || hierarchy_fits(condensation->signature(), system.layout->communicator);
-        if (!reuse)
-          make_multigrid(system, *condensation);
-        unsigned int iterations;
-        try
-        {
-          iterations = iterate(matrix, *condensation, b, tolerance, x);
-        }
-        catch (const SolverFailure &)
-        {
-          if (!reuse)
-            throw;
-          make_multigrid(system, *condensation);
-          iterations = iterate(matrix, *condensation, b, tolerance, x);
-        }
-        report.iterations += iterations;
-        if (first)
-        {
-          last_iterations_ = iterations / -std::log10(std::min(tolerance, 0.1));
-          if (first_iterations_ == 0.)
-            first_iterations_ = last_iterations_;
-        }
-        first = false;
-        matrix.vmult(r, x);
-        r.sadd(-1., 1., b);
-        if (n == 0)
-          report.relative_residual = matrix.unscaled_norm(r) / matrix.unscaled_norm(b);
+        iterations = iterate(matrix, *condensation, b, tolerance, x);
       }
-      matrix.to_solution(x, solutions[n]);
-    }
-    return report;
+      catch (const SolverFailure &)
+      {
+        if (!reuse)
+          throw;
+        make_multigrid(system, *condensation);
+        iterations = iterate(matrix, *condensation, b, tolerance, x);
+      }
+      if (first)
+      {
+        last_iterations_ = iterations / -std::log10(std::min(tolerance, 0.1));
+        if (first_iterations_ == 0.)
+          first_iterations_ = last_iterations_;
+      }
+      first = false;
+      return iterations;
+    };
+    return matrix.solve_each(rhs, "Condensed solver", find_x, solutions);
   }
 } // namespace Nodus

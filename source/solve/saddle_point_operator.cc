@@ -306,6 +306,37 @@ namespace Nodus
     }
   }
 
+  LinearSolver::Report
+  SaddlePointOperator::solve_each(const std::vector<const BlockVector *>                                       &rhs,
+                                  const std::string                                                            &solver,
+                                  const std::function<unsigned int(const BlockVector &scaled, BlockVector &x)> &iterate,
+                                  std::vector<BlockVector> &solutions) const
+  {
+    LinearSolver::Report report;
+    solutions.resize(rhs.size());
+    for (unsigned int n = 0; n < rhs.size(); ++n)
+    {
+      const BlockVector b = scaled(*rhs[n]);
+      BlockVector       x, r;
+      x.reinit(b);
+      r.reinit(b);
+      const double norm_b = b.l2_norm();
+      if (!std::isfinite(norm_b))
+        throw SolverFailure(solver + ": the right-hand side holds a value that is not finite.",
+                            SolverFailure::Kind::not_finite);
+      if (norm_b > 0.)
+      {
+        report.iterations += iterate(b, x);
+        vmult(r, x);
+        r.sadd(-1., 1., b);
+        if (n == 0)
+          report.relative_residual = unscaled_norm(r) / unscaled_norm(b);
+      }
+      to_solution(x, solutions[n]);
+    }
+    return report;
+  }
+
   double SaddlePointOperator::unscaled_norm(const BlockVector &residual) const
   {
     const Epetra_MultiVector &m   = residual.block(1).trilinos_vector();

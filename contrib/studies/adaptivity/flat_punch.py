@@ -248,15 +248,13 @@ against that of the exact force at the slave nodes with r < 0.9 a, weighted with
 {table}
 - Punch = plane, slave faces up to r = a: the force converges with order 1 on uniform meshes (the singularity), Q1 as Q2.
   Adaptive Q1 has the force of uniform meshes with 3 (level 4) and 8 times (level 5) the unknowns, at about the same CPU: five repetitions,
-  each of a small problem. The error of the pressure is 5 % on nearly all meshes, most of it between 0.85 and 0.9 a.
-- **Q2 adaptive is wrong on part of the rim, or all of it:** force too small, pressure off by up to 63 %; that of level 4 is good by accident, two of four stretches of the
-  rim are not in contact. The rim of the slave region is the edge of a larger face outside of it. The node in the middle of that edge
-  belongs to no slave face, the nodes on the fine side follow it, and so it carries no multiplier and goes through the plane
-  (by 5 to 25 % of the approach). Q1 has no such node. Without a mesh file: a block 2 x 1 x 1 of two cells, Degree = 2,
-  Local refinement = 1 and Slave where for x < 1, pressed by a plane: the force is 1.102, and 1.274 with all cells split.
+  each of a small problem. The error of the pressure of Q1 is 5 % on nearly all meshes, most of it between 0.85 and 0.9 a.
+- Adaptive Q2 has the force of the finest uniform mesh with a thirteenth of its unknowns (level 4), and the smaller error of the pressure,
+  for a fourteenth of its CPU. The rim of the slave region is the edge of larger faces outside of it there: the node in the middle of
+  such an edge follows none and carries a multiplier.
 - Punch = body, whose rim cuts slave faces: nodes beyond the rim are loaded on slivers of their faces and get pressures of up to 90
   times the mean, nodes inside open. The uniform meshes have the force, not the pressure. On the **adaptive ones the error of the
-  force stays at 9 %**: the indicator takes those nodal pressures as they are ("estimated error 778 %" in the log) and goes on refining there.
+  force stays at 8 %**: the indicator takes those nodal pressures as they are ("estimated error 377 %" in the log) and goes on refining there.
 
 ![Errors](flat_punch.png)
 """

@@ -1,12 +1,15 @@
 #ifndef nodus_solve_saddle_point_operator_h
 #define nodus_solve_saddle_point_operator_h
 
+#include <nodus/solve/linear_solver.h>
 #include <nodus/solve/linear_system.h>
 
 #include <Eigen/Core>
 #include <Epetra_CrsMatrix.h>
 
+#include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace Nodus
@@ -67,6 +70,14 @@ namespace Nodus
 
     /// Writes @p x in the unknowns of the system.
     void to_solution(const BlockVector &x, BlockVector &solution) const;
+
+    /// Scales each of @p rhs, has @p iterate find x from it (@returns the number of iterations) unless it is zero, and
+    /// writes that in the unknowns of the system. @throws SolverFailure for @p solver if it is not finite.
+    LinearSolver::Report
+    solve_each(const std::vector<const BlockVector *>                                       &rhs,
+               const std::string                                                            &solver,
+               const std::function<unsigned int(const BlockVector &scaled, BlockVector &x)> &iterate,
+               std::vector<BlockVector>                                                     &solutions) const;
 
     bool symmetric() const
     {
