@@ -3,6 +3,8 @@
 #include <nodus/contact/contact_error.h>
 #include <nodus/contact/tractions.h>
 #include <nodus/contact_problem_implementation.h>
+#include <nodus/mesh/hanging_nodes.h>
+#include <nodus/nodal_state.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/distributed/solution_transfer.h>
@@ -54,7 +56,11 @@ namespace Nodus
       return true;
     }
 
-    const std::vector<Vector>                                    state_before = nodal_state(true);
+    // hanging nodes have no state of their own, but their cells are interpolated
+    std::vector<Vector> state_before   = nodal_state(true);
+    const auto          hanging_before = hanging_constraints(dof_handler);
+    for (unsigned int n = n_displacement_vectors; n < state_before.size(); ++n)
+      hanging_before.distribute(state_before[n]);
     std::vector<Vector>                                          ghosted(state_before.size());
     std::vector<const Vector *>                                  pointers;
     dealii::parallel::distributed::SolutionTransfer<dim, Vector> transfer(dof_handler);
@@ -76,9 +82,7 @@ namespace Nodus
     for (Vector &v : after)
       after_pointers.push_back(&v);
     transfer.interpolate(after_pointers);
-    dealii::AffineConstraints<double> hanging_nodes(relevant);
-    HangingNodes(dof_handler).add_to(hanging_nodes);
-    hanging_nodes.close();
+    const auto hanging_nodes = hanging_constraints(dof_handler);
     for (Vector &v : after)
       hanging_nodes.distribute(v);
     histories.finish(*solid);

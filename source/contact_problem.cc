@@ -109,6 +109,7 @@ namespace Nodus
     for (Vector *v : {&u_geometry, &u_before_geometry})
       v->reinit(layout.owned[0], communicator);
     committed_site_force.assign(surfaces->n_sites(), Vector3());
+    committed_site_jump.assign(surfaces->n_sites(), Vector3());
     gather_state();
   }
 

@@ -306,9 +306,14 @@ namespace Nodus
     solid->commit();
     audit_energies();
     rigid_bodies->commit(rigid_applied);
-    committed                 = solution;
-    committed_pairing         = pairing;
-    committed_area            = weights.area();
+    committed                    = solution;
+    committed_pairing            = pairing;
+    committed_area               = weights.area();
+    const std::vector<Vector3> u = surface_displacement();
+    for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
+      committed_site_jump[s] = jump.jump(s, u);
+    mesh_is_new = false;
+    jump.set_stuck({});
     committed_stiffness_scale = stiffness_scale;
     const bool on_new_mesh    = time == path.time();
     if (on_new_mesh ? time == path.interval_begin() : path.ends_interval())

@@ -45,6 +45,40 @@ namespace Nodus
     pairing.project(pairs, *surfaces, *geometry, averaged);
     jump.build(pairs, *surfaces, *geometry, pairing, averaged);
     weigh_surfaces();
+    if (mesh_is_new)
+      carry_over_sticking();
+  }
+
+  /// Displacements of the surface nodes.
+  std::vector<Vector3> ContactProblem::Implementation::surface_displacement() const
+  {
+    const std::vector<Point> X = surfaces->positions(std::vector<Vector3>(surfaces->nodes().size()));
+    std::vector<Vector3>     u(X.size());
+    for (unsigned int n = 0; n < u.size(); ++n)
+      u[n] = state.x[n] - X[n];
+    return u;
+  }
+
+  /// On a new mesh: sites that stick do so where the surfaces stuck, not where interpolated displacements that are not
+  /// in equilibrium have put them: the jump of the displacement is taken over besides these. Where the difference would
+  /// change friction by more than its limit it is one of geometry (slip on curved surfaces), and left out.
+  void ContactProblem::Implementation::carry_over_sticking()
+  {
+    std::vector<Vector3> u = surface_displacement();
+    for (unsigned int n = 0; n < u.size(); ++n)
+      u[n] -= state.increment[n];
+    std::vector<Vector3> stuck(surfaces->n_sites());
+    for (unsigned int s = 0; s < stuck.size(); ++s)
+    {
+      if (!surfaces->is_owned(s) || !jump_known[s] || !pairing[s].found || !status->friction(s) || !status->stick(s))
+        continue;
+      Vector3 moved = jump.jump(s, u) - kept_jump[s];
+      moved -= (moved * pairing[s].normal) * pairing[s].normal;
+      if (status->tangential_augmentation(s, status->threshold(s)) * moved.norm() <= 1.)
+        stuck[s] = moved;
+    }
+    surfaces->site_exchange().update(stuck);
+    jump.set_stuck(std::move(stuck));
   }
 
   /// Freezes the geometry at the current positions and carries statuses and multipliers over.

@@ -3,6 +3,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <cmath>
 
 // The committed state as vectors of the nodes, which a checkpoint and a new mesh take over.
 
@@ -18,7 +19,8 @@ namespace Nodus
     for (const ContactPoint &point : weights.points())
       if (point.site != dealii::numbers::invalid_unsigned_int && point.owner == rank)
       {
-        const SiteState here = site_state(status->kept(point.site), committed_site_force[point.site]);
+        const SiteState here =
+            site_state(status->kept(point.site), committed_site_force[point.site], committed_site_jump[point.site]);
         for (unsigned int a = 0; a < point.slaves.size(); ++a)
         {
           double *const sum  = sums.data() + (n_site + 1) * point.slaves[a];
@@ -31,7 +33,7 @@ namespace Nodus
     surfaces->slave_exchange().sum(sums, n_site + 1);
     for (unsigned int k = 0; k < states.size(); ++k)
       if (surfaces->has_status(k))
-        states[k] = site_state(status->kept(k), committed_site_force[k]);
+        states[k] = site_state(status->kept(k), committed_site_force[k], committed_site_jump[k]);
       else if (const double *const sum = sums.data() + (n_site + 1) * k; sum[n_site] > 0.)
         for (unsigned int i = 0; i < n_site; ++i)
           states[k][i] = sum[i] / sum[n_site];
@@ -71,10 +73,11 @@ namespace Nodus
     for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
     {
       NodeState       state{};
-      const SiteState site       = in_space ? means[k] : site_state(status->kept(k), committed_site_force[k]);
-      const DoFIndex  multiplier = surfaces->multiplier(k);
-      double         *value      = std::copy(site.begin(), site.end(), state.begin());
-      *value++                   = committed.block(1)(multiplier);
+      const SiteState site =
+          in_space ? means[k] : site_state(status->kept(k), committed_site_force[k], committed_site_jump[k]);
+      const DoFIndex multiplier = surfaces->multiplier(k);
+      double        *value      = std::copy(site.begin(), site.end(), state.begin());
+      *value++                  = committed.block(1)(multiplier);
       Vector3 Lambda;
       for (unsigned int i = 0; i < 2; ++i)
         if (const double component = committed.block(2)(2 * multiplier + i); in_space)
@@ -144,12 +147,19 @@ namespace Nodus
     if (dealii::Utilities::MPI::max(largest, communicator) == 0.)
       committed_area.clear(); // pressures on a mesh that has not seen equilibrium
     committed_pairing.set_tangents(tangents);
+    // between sites in contact alone, which have a partner
+    const auto                  is_one = [](const double value) { return std::abs(value - 1.) < 1e-6; };
     std::vector<Status::Record> records(sites.size());
+    mesh_is_new = in_space;
+    jump_known.assign(sites.size(), false);
     for (unsigned int s = 0; s < sites.size(); ++s)
     {
       std::copy_n(sites[s].begin(), n_status, records[s].begin());
       std::copy_n(sites[s].begin() + n_status, dim, committed_site_force[s].begin_raw());
+      std::copy_n(sites[s].begin() + n_status + dim, dim, committed_site_jump[s].begin_raw());
+      jump_known[s] = is_one(sites[s][0]);
     }
+    kept_jump = committed_site_jump;
     status->restore(records);
   }
 } // namespace Nodus

@@ -182,7 +182,7 @@ namespace Nodus
       std::vector<double> values;
       for (unsigned int s = first; s < first + n_points(*surfaces, first); ++s)
       {
-        const SiteState state = site_state(status->kept(s), committed_site_force[s]);
+        const SiteState state = site_state(status->kept(s), committed_site_force[s], committed_site_jump[s]);
         values.insert(values.end(), state.begin(), state.end());
       }
       piece.faces.emplace_back(face, std::move(values));

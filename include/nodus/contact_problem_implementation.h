@@ -41,9 +41,9 @@ namespace Nodus
     std::string names() const;
   };
 
-  /// State of a contact site in a checkpoint and on its way to a new mesh: its Status::Record and the force on the
-  /// slave.
-  using SiteState = std::array<double, std::tuple_size<Status::Record>::value + dim>;
+  /// State of a contact site in a checkpoint and on its way to a new mesh: its Status::Record, the force on the
+  /// slave and the jump of the displacement.
+  using SiteState = std::array<double, std::tuple_size<Status::Record>::value + 2 * dim>;
 
   /// Everything a run owns. contact_problem.cc builds it and reports, load_path.cc goes from increment to increment,
   /// load_increment.cc holds the three nested loops, newton_iterate.cc what Newton sees, restart.cc the checkpoints,
@@ -54,21 +54,23 @@ namespace Nodus
     Implementation(const Parameters &parameters, MPI_Comm communicator, std::ostream &log);
 
     // The algorithm, outermost first.
-    void           run();
-    void           follow_load_path();
-    void           impose(double t);
-    void           solve_increment();
-    void           solve_loops();
-    void           pair_surfaces();
-    void           freeze_geometry();
-    void           weigh_surfaces();
-    void           pass_to_means();
-    void           check_frozen_statuses();
-    void           note_pass(const FixedPointLoop &loop, double value, const std::string &worst);
-    bool           geometry_converged(FixedPointLoop &loop);
-    bool           threshold_converged(FixedPointLoop &loop, SecantAcceleration &secant);
-    bool           statuses_converged(FixedPointLoop &loop);
-    Status::Update update_statuses(bool closing_only = false);
+    void                 run();
+    void                 follow_load_path();
+    void                 impose(double t);
+    void                 solve_increment();
+    void                 solve_loops();
+    void                 pair_surfaces();
+    void                 freeze_geometry();
+    void                 carry_over_sticking();
+    std::vector<Vector3> surface_displacement() const;
+    void                 weigh_surfaces();
+    void                 pass_to_means();
+    void                 check_frozen_statuses();
+    void                 note_pass(const FixedPointLoop &loop, double value, const std::string &worst);
+    bool                 geometry_converged(FixedPointLoop &loop);
+    bool                 threshold_converged(FixedPointLoop &loop, SecantAcceleration &secant);
+    bool                 statuses_converged(FixedPointLoop &loop);
+    Status::Update       update_statuses(bool closing_only = false);
 
     LinearSolver::Report solve_system(const std::vector<const BlockVector *> &rhs,
                                       std::vector<BlockVector>               &corrections,
@@ -187,6 +189,10 @@ namespace Nodus
     Energies                              energies; ///< up to the last converged increment
     Vector                                committed_applied;    ///< applied_forces() at its end
     std::vector<Vector3>                  committed_site_force; ///< on the slave there, right at owned sites
+    std::vector<Vector3>                  committed_site_jump;  ///< of the displacement there, likewise
+    bool                                  mesh_is_new = false;  ///< until the next commit
+    std::vector<char>                     jump_known;           ///< then: sites that stick between others that do
+    std::vector<Vector3>                  kept_jump;            ///< and their jumps of the displacement
     Pairing                               committed_pairing;    ///< at the start of the load step
     std::vector<double> nodal_area, committed_area; ///< that the multipliers of solution and committed refer to
 

@@ -32,9 +32,7 @@ namespace Nodus
 
     IndexSet relevant;
     DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
-    AffineConstraints<double> hanging_nodes(relevant);
-    HangingNodes(dof_handler).add_to(hanging_nodes);
-    hanging_nodes.close();
+    const AffineConstraints<double> hanging_nodes = hanging_constraints(dof_handler);
 
     std::vector<Vector> nodal(plastic ? 3 : 2);
     for (auto &v : nodal)

@@ -2,7 +2,6 @@
 #include <nodus/mesh/hanging_nodes.h>
 
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/trilinos_vector.h>
 
@@ -27,14 +26,10 @@ namespace Nodus
     const auto           &fe = dof_handler.get_fe();
     dealii::FEValues<dim> values(
         mapping, fe, dealii::QGauss<dim>(fe.degree + 1), dealii::update_values | dealii::update_JxW_values);
-    Vector           sum(owned, dof_handler.get_communicator());
-    dealii::IndexSet relevant;
-    dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
-    dealii::AffineConstraints<double> hanging_nodes(relevant);
-    HangingNodes(dof_handler).add_to(hanging_nodes);
-    hanging_nodes.close();
-    std::vector<DoFIndex>  dofs(fe.n_dofs_per_cell());
-    dealii::Vector<double> part(fe.n_dofs_per_cell());
+    Vector                                  sum(owned, dof_handler.get_communicator());
+    const dealii::AffineConstraints<double> hanging_nodes = hanging_constraints(dof_handler);
+    std::vector<DoFIndex>                   dofs(fe.n_dofs_per_cell());
+    dealii::Vector<double>                  part(fe.n_dofs_per_cell());
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
       {

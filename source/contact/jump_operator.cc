@@ -61,6 +61,7 @@ namespace Nodus
     start_.assign(1, 0);
     middle_.clear();
     offset_.clear();
+    stuck_.clear();
     std::size_t first_of_part = 0; // slave or master part of a row
     // a hanging node is where those are that it follows, but for its reference position
     const auto add = [&](const unsigned int node, const double weight)

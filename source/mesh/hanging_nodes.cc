@@ -95,4 +95,14 @@ namespace Nodus
             constraints.add_entry(dof, dim * master + c, weight);
         }
   }
+
+  dealii::AffineConstraints<double> hanging_constraints(const dealii::DoFHandler<dim> &dof_handler)
+  {
+    dealii::IndexSet relevant;
+    dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+    dealii::AffineConstraints<double> constraints(relevant);
+    HangingNodes(dof_handler).add_to(constraints);
+    constraints.close();
+    return constraints;
+  }
 } // namespace Nodus

@@ -50,8 +50,7 @@ namespace Nodus
                      const Status          &status);
 
     /// Fills the contact couplings, the multiplier scale, the border and the multiplier blocks of the right-hand side
-    /// of
-    /// @p system; subtracts the contact forces from its displacement block (free components only). Collective.
+    /// of @p system; subtracts the contact forces from its displacement block (free components only). Collective.
     /// @p linearise_threshold: the thresholds follow the current pressure (SurfaceWeights, site_pressure); the tangent
     /// gets the derivative of the friction tractions with respect to lambda and is not symmetric any more. That of the
     /// factors which scale the friction law rows is left out where a row has one factor (one node a point), and

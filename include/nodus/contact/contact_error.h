@@ -17,9 +17,8 @@ namespace Nodus
   /// squared error of the face is @p weight times h A/E times the sum of
   /// - the mean square over its nodes of the jump between the contact traction and the recovered stress below it,
   /// - (E g/h)^2, g the gap in the middle of a face whose nodes are all closed, or the penetration there of any other,
-  /// - the largest squared traction of a face whose nodes are not all open or all closed, a quarter of the square of
-  /// its
-  ///   friction where some stick and some slip: the ends of the contact and of the stick zone lie in it.
+  /// - the largest squared traction of a face whose nodes are not all open or all closed, a quarter of the square
+  ///   of its friction where some stick and some slip: the ends of the contact and of the stick zone lie in it.
   /// The cell of the master face that faces its middle gets the same share. Collective.
   void add_contact_error(double                            weight,
                          const std::vector<double>        &stiffness,

@@ -50,10 +50,15 @@ namespace Nodus
         result += e->weight * displacement[e->node];
       return result;
     }
-    /// Jump of the displacement of the increment: with what rigid masters add.
+    /// Jump of the displacement of the increment: with what rigid masters add, and from where a site stuck before.
     Vector3 jump_of_increment(const unsigned int site, const std::vector<Vector3> &increment) const
     {
-      return jump(site, increment) - rigid_[site].moved;
+      return jump(site, increment) - rigid_[site].moved + (stuck_.empty() ? Vector3() : stuck_[site]);
+    }
+    /// On a new mesh: the jump with which the increment begins, relative to where the site stuck; until the next build.
+    void set_stuck(std::vector<Vector3> jumps)
+    {
+      stuck_ = std::move(jumps);
     }
     /// Jump of positions: with what rigid masters and smoothed surfaces add.
     Vector3 jump(const unsigned int site, const std::vector<Point> &positions) const
@@ -74,6 +79,7 @@ namespace Nodus
     std::vector<unsigned int> start_, middle_;
     std::vector<Vector3>      offset_;
     std::vector<RigidPart>    rigid_;
+    std::vector<Vector3>      stuck_; ///< empty, or per site
   };
 } // namespace Nodus
 

@@ -48,6 +48,9 @@ namespace Nodus
     bool                                  exist_;
   };
 
+  /// The closed constraints of the hanging nodes, among the locally relevant degrees of freedom. Collective.
+  dealii::AffineConstraints<double> hanging_constraints(const dealii::DoFHandler<dim> &dof_handler);
+
   /// Whether a closed line of @p constraints sets @p dof to a value: it is prescribed, or all that it follows is.
   inline bool is_prescribed(const dealii::AffineConstraints<double> &constraints, const DoFIndex dof)
   {
