@@ -13,8 +13,9 @@ namespace Nodus
   {
     /// Newton iterations without progress after which a merged iteration is given up.
     constexpr unsigned int patience = 8;
-    /// Geometry passes that change more than this fraction of the one before are damped.
-    constexpr double slow_contraction = 0.9;
+    /// Geometry passes that change more than this fraction of the one before are mixed with those before it; with
+    /// rigid bodies that forces drive, those that change more than the second are damped.
+    constexpr double plain_contraction = 0.3, slow_contraction = 0.9;
     /// Times that a geometry loop may come back to the pass before the last.
     constexpr unsigned int tolerated_geometry_cycles = 2;
     /// Sites whose statuses cycle may contradict them by this much, of the largest pressure or of the cone.
@@ -32,48 +33,64 @@ namespace Nodus
   }
 
   /// The loops as the parameters ask for them; where a merged iteration fails, once more with the geometry as a loop,
-  /// and at last with all three as loops. In each of these attempts laws hold in the mean from where statuses cycle, if
-  /// sites share multipliers (Status::hold_in_the_mean). Where thresholds were to be a loop and that fails, they follow
-  /// the pressure.
+  /// then, with friction, from a first iterate that growing friction leads to, and at last with all three as loops. In
+  /// each of these attempts laws hold in the mean from where statuses cycle, if sites share multipliers
+  /// (Status::hold_in_the_mean). Where thresholds were to be a loop and that fails, they follow the pressure.
   void ContactProblem::Implementation::solve_increment()
   {
+    struct Attempt
+    {
+      MergedLoops merged;
+      bool        approach;
+      const char *name;
+    };
     counts = IterationCounts();
-    merged = {parameters.geometry_loop.mode == LoopParameters::Mode::newton,
-              parameters.threshold_loop.mode == LoopParameters::Mode::newton && status->has_friction(),
-              parameters.status_loop.mode == LoopParameters::Mode::newton};
-    while (merged.any())
+    direct_solver.reset();
+    const bool        friction = status->has_friction();
+    const auto       &pairs    = parameters.contact_pairs;
+    const bool        slides   = friction && std::any_of(pairs.begin(),
+                                                pairs.end(),
+                                                [](const ContactPairParameters &pair) {
+                                                  return pair.contact_law != ContactPairParameters::ContactLaw::tied;
+                                                });
+    const MergedLoops asked    = {parameters.geometry_loop.mode == LoopParameters::Mode::newton,
+                                  parameters.threshold_loop.mode == LoopParameters::Mode::newton && friction,
+                                  parameters.status_loop.mode == LoopParameters::Mode::newton};
+    const MergedLoops inner    = {false, asked.threshold, asked.status};
+
+    std::vector<Attempt> attempts{{asked, false, ""}};
+    if (asked.geometry && inner.any())
+      attempts.push_back({inner, false, "a geometry loop"});
+    if (slides && asked.status)
+      attempts.push_back({inner, true, "a geometry loop and growing friction"});
+    if (asked.any())
+      attempts.push_back({MergedLoops(), false, "three loops"});
+    if (parameters.threshold_loop.mode != LoopParameters::Mode::newton && status->threshold_follows_pressure())
+      attempts.push_back({{false, true, false}, false, "the coupled threshold"});
+
+    for (auto attempt = attempts.begin();; ++attempt)
       try
       {
-        solve_loops();
+        merged = attempt->merged;
+        diagnosis.begin_attempt(merged.names() + (attempt->approach ? "; friction grows" : ""));
+        if (attempt->approach)
+          approach_friction();
+        else
+          solve_loops();
         return;
       }
       catch (const SolverFailure &failure)
       {
-        MergedLoops fewer;
-        if (merged.geometry)
-          fewer = {false, merged.threshold, merged.status};
-        console.remark(std::string("merged iteration given up: ") + failure.what() + "; again with " +
-                       (fewer.any() ? "a geometry loop" : "three loops"));
+        approaches = false;
+        status->set_friction_fraction(1.);
+        if (attempt + 1 == attempts.end())
+          throw;
+        console.remark((merged.any() ? "merged iteration given up: " : "three loops given up: ") +
+                       std::string(failure.what()) + "; again with " + attempt[1].name);
         diagnosis.end_attempt(failure.what());
         roll_back();
-        merged = fewer;
         ++counts.fallbacks;
       }
-    try
-    {
-      solve_loops();
-    }
-    catch (const SolverFailure &failure)
-    {
-      if (parameters.threshold_loop.mode == LoopParameters::Mode::newton || !status->threshold_follows_pressure())
-        throw;
-      console.remark(std::string("three loops given up: ") + failure.what() + "; again with the coupled threshold");
-      diagnosis.end_attempt(failure.what());
-      roll_back();
-      merged.threshold = true;
-      ++counts.fallbacks;
-      solve_loops();
-    }
   }
 
   /// Three nested loops around Newton (theory section 6); those merged into Newton are passed through once.
@@ -81,10 +98,10 @@ namespace Nodus
   {
     status->begin_increment();
     rigid_waits = 0;
-    diagnosis.begin_attempt(merged.names());
     const Newton newton(parameters.newton, merged.any() ? patience : 0);
 
     FixedPointLoop geometry("geometry", parameters.geometry_loop);
+    AndersonMixing mixing;
     geometry_cycles = 0;
     do
     {
@@ -125,7 +142,7 @@ namespace Nodus
                        });
         } while (!statuses_converged(statuses));
       } while (!threshold_converged(threshold, secant));
-    } while (!geometry_converged(geometry));
+    } while (!geometry_converged(geometry, mixing));
     if (!merged.status)
       check_frozen_statuses();
   }
@@ -230,10 +247,10 @@ namespace Nodus
     return false;
   }
 
-  bool ContactProblem::Implementation::geometry_converged(FixedPointLoop &loop)
+  bool ContactProblem::Implementation::geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing)
   {
     ++counts.geometry;
-    if (merged.geometry)
+    if (merged.geometry || approaches)
       return true;
     const auto   timer = profile.time(Phase::pairing);
     std::string  worst;
@@ -249,8 +266,8 @@ namespace Nodus
     if (loop.finished(value, worst))
       return true;
 
-    // The solution of two passes ago again, while it differs from that of the last one: a 2-cycle. It is left by
-    // pairing half-way between the two, as is a loop that does not contract; one that comes back is no fixed point.
+    // The solution of two passes ago again, while it differs from that of the last one: a 2-cycle; one that comes back
+    // is no fixed point.
     const bool cycle = loop.counter() >= 3 && largest_difference(solution.block(0), u_before_geometry) <= 1e-6 * change;
     if (cycle && ++geometry_cycles > tolerated_geometry_cycles)
       throw SolverFailure(
@@ -258,6 +275,20 @@ namespace Nodus
               ": a slave node crosses an edge of the faceted master and back; try 'Normal = averaged' or "
               "smaller increments",
           SolverFailure::Kind::geometry_cycle);
+    if (rigid_bodies->size() == 0)
+    {
+      Vector correction(solution.block(0));
+      correction -= u_geometry;
+      const bool mix    = loop.counter() >= 3 && value > plain_contraction * before;
+      solution.block(0) = mixing.next(correction, mix);
+      solution.block(0) += u_geometry;
+      if (mix)
+      {
+        console.remark("the geometry loop is slow: the next pass starts where the last ones lead to");
+        gather_state();
+      }
+      return false;
+    }
     if (cycle || (loop.counter() >= 3 && value > slow_contraction * before))
     {
       console.remark(cycle ? "the geometry loop cycles with period 2: the next pass starts half-way"

@@ -356,27 +356,27 @@ namespace Nodus
     return norms;
   }
 
-  /// An iterative solver that fails leaves this correction to the direct one, if the system is not too large for that.
+  /// An iterative solver that fails leaves the rest of the increment to the direct one, if the system is not too large
+  /// for that: its next systems are no easier.
   LinearSolver::Report ContactProblem::Implementation::solve_system(const std::vector<const BlockVector *> &rhs,
                                                                     std::vector<BlockVector>               &corrections,
                                                                     const double relative_tolerance)
   {
-    try
-    {
-      return linear_solver->solve(system, rhs, corrections, relative_tolerance);
-    }
-    catch (const SolverFailure &failure)
-    {
-      if (linear_solver_parameters.type == LinearSolverParameters::Type::direct ||
-          dof_handler.n_dofs() > largest_direct)
-        throw;
-      console.remark(std::string(failure.what()) + "; this correction comes from the direct solver");
-    }
     if (!direct_solver)
-    {
-      direct_solver = make_linear_solver(LinearSolverParameters(), surfaces->layout(), {});
-      direct_solver->set_profile(&profile);
-    }
+      try
+      {
+        return linear_solver->solve(system, rhs, corrections, relative_tolerance);
+      }
+      catch (const SolverFailure &failure)
+      {
+        if (linear_solver_parameters.type == LinearSolverParameters::Type::direct ||
+            dof_handler.n_dofs() > largest_direct)
+          throw;
+        console.remark(std::string(failure.what()) +
+                       "; this correction comes from the direct solver, and so do those after it in this increment");
+        direct_solver = make_linear_solver(LinearSolverParameters(), surfaces->layout(), {});
+        direct_solver->set_profile(&profile);
+      }
     return direct_solver->solve(system, rhs, corrections, relative_tolerance);
   }
 

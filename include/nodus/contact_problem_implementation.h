@@ -18,6 +18,7 @@
 #include <nodus/output/profile.h>
 #include <nodus/output/tables.h>
 #include <nodus/output/vtu.h>
+#include <nodus/solve/anderson_mixing.h>
 #include <nodus/solve/fixed_point_loop.h>
 #include <nodus/solve/linear_solver.h>
 #include <nodus/solve/load_stepping.h>
@@ -46,9 +47,9 @@ namespace Nodus
   using SiteState = std::array<double, std::tuple_size<Status::Record>::value + 2 * dim>;
 
   /// Everything a run owns. contact_problem.cc builds it and reports, load_path.cc goes from increment to increment,
-  /// load_increment.cc holds the three nested loops, newton_iterate.cc what Newton sees, restart.cc the checkpoints,
-  /// failed_state.cc what is kept of an increment that fails, adapt.cc changes the mesh, rigid_motion.cc lets forces
-  /// drive rigid bodies.
+  /// load_increment.cc holds the three nested loops, approach_friction.cc a way to a first iterate, newton_iterate.cc
+  /// what Newton sees, restart.cc the checkpoints, failed_state.cc what is kept of an increment that fails, adapt.cc
+  /// changes the mesh, rigid_motion.cc lets forces drive rigid bodies.
   struct ContactProblem::Implementation : public NewtonProblem
   {
     Implementation(const Parameters &parameters, MPI_Comm communicator, std::ostream &log);
@@ -58,6 +59,7 @@ namespace Nodus
     void                 follow_load_path();
     void                 impose(double t);
     void                 solve_increment();
+    void                 approach_friction();
     void                 solve_loops();
     void                 pair_surfaces();
     void                 freeze_geometry();
@@ -67,7 +69,7 @@ namespace Nodus
     void                 pass_to_means();
     void                 check_frozen_statuses();
     void                 note_pass(const FixedPointLoop &loop, double value, const std::string &worst);
-    bool                 geometry_converged(FixedPointLoop &loop);
+    bool                 geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing);
     bool                 threshold_converged(FixedPointLoop &loop, SecantAcceleration &secant);
     bool                 statuses_converged(FixedPointLoop &loop);
     Status::Update       update_statuses(bool closing_only = false);
@@ -209,6 +211,7 @@ namespace Nodus
     bool            motions_unknown   = false; ///< of the bodies, as the first increment of an interval begins
     double          prescribed_before = 0.;    ///< still to be met at the last assembly, relative
     MergedLoops     merged;                    ///< in this attempt at the increment
+    bool            approaches = false;        ///< a first iterate in it: the friction limits are not all in force
 
     LoadStepping    path;
     bool            restart = false; ///< asked for: continue from a checkpoint

@@ -94,24 +94,29 @@ namespace Nodus
 
   Status::Change Status::threshold_change(const std::vector<double> &site_pressure) const
   {
-    double largest = 0.;
+    const MPI_Comm            communicator = surfaces_.layout().communicator;
+    const std::vector<double> thresholds   = thresholds_at(site_pressure);
+    std::vector<double>       largest(pairs_.size(), 0.);
+    for (unsigned int k = 0; k < thresholds.size(); ++k)
+      if (surfaces_.is_owned(k))
+      {
+        double &l = largest[surfaces_.pair(k)];
+        l         = std::max(l, -thresholds[k]);
+      }
+    dealii::Utilities::MPI::max(largest, communicator, largest);
     Change change;
-    for (unsigned int k = 0; k < site_pressure.size(); ++k)
-    {
-      if (!surfaces_.is_owned(k))
-        continue;
-      const double threshold = limits_[surfaces_.pair(k)].threshold(site_pressure[k], friction_factor_[k]);
-      largest                = std::max(largest, -threshold);
-      const double d         = std::abs(threshold - now_.threshold[k]);
-      if (d > change.value)
-        change = {d, k};
-    }
-    const MPI_Comm communicator = surfaces_.layout().communicator;
-    largest                     = dealii::Utilities::MPI::max(largest, communicator);
-    const auto worst            = dealii::Utilities::MPI::min_max_avg(change.value, communicator);
+    for (unsigned int k = 0; k < thresholds.size(); ++k)
+      if (surfaces_.is_owned(k))
+      {
+        const double l = largest[surfaces_.pair(k)];
+        const double d = std::abs(thresholds[k] - now_.threshold[k]) / (l > 0. ? l : 1.);
+        if (d > change.value)
+          change = {d, k};
+      }
+    const auto worst = dealii::Utilities::MPI::min_max_avg(change.value, communicator);
     if (worst.max_index != dealii::Utilities::MPI::this_mpi_process(communicator))
       change.site = dealii::numbers::invalid_unsigned_int;
-    change.value = largest > 0. ? worst.max / largest : worst.max;
+    change.value = worst.max;
     return change;
   }
 
@@ -120,7 +125,7 @@ namespace Nodus
     note_friction();
     now_.threshold = thresholds_at(site_pressure);
     for (unsigned int k = 0; k < site_pressure.size(); ++k)
-      threshold_slope_[k] = limits_[surfaces_.pair(k)].slope(site_pressure[k], friction_factor_[k]);
+      threshold_slope_[k] = limits_[surfaces_.pair(k)].slope(site_pressure[k], factor(k));
     update_floor();
   }
 
@@ -128,7 +133,7 @@ namespace Nodus
   {
     std::vector<double> thresholds;
     for (unsigned int k = 0; k < site_pressure.size(); ++k)
-      thresholds.push_back(limits_[surfaces_.pair(k)].threshold(site_pressure[k], friction_factor_[k]));
+      thresholds.push_back(limits_[surfaces_.pair(k)].threshold(site_pressure[k], factor(k)));
     return thresholds;
   }
 
@@ -168,6 +173,15 @@ namespace Nodus
       floor         = std::max(floor, -relative_threshold_floor * now_.threshold[k]);
     }
     dealii::Utilities::MPI::max(threshold_floor_, surfaces_.layout().communicator, threshold_floor_);
+  }
+
+  void Status::set_friction_fraction(const double fraction)
+  {
+    if (friction_fraction_ == 0. && fraction > 0.)
+      for (unsigned int k = 0; k < now_.stick.size(); ++k)
+        if (pairs_[surfaces_.pair(k)].contact_law != ContactLaw::tied)
+          now_.stick[k] = false;
+    friction_fraction_ = fraction;
   }
 
   bool Status::can_project(const unsigned int pair) const
@@ -318,15 +332,26 @@ namespace Nodus
       }
     }
 
+    // Stick would take a site that closes back to where the increment began. One that has come farther than friction
+    // can hold slips: eq. 7 with the threshold of the pressure that eq. 2 closes it with.
+    const auto held = [&](const unsigned int k)
+    {
+      const unsigned int p         = surfaces_.pair(k);
+      const double       value     = input.pressure[k] - normal_augmentation(k) * input.distance[k];
+      const double       threshold = limits_[p].threshold(value, factor(k));
+      return pairs_[p].tangential_augmentation_factor * normal_augmentation(k) *
+                 std::hypot(input.slip[k][0], input.slip[k][1]) <=
+             -threshold;
+    };
     for (unsigned int i = 0; i < result.sites.size(); ++i)
     {
       const unsigned int k = result.sites[i];
       now_.contact[k]      = found[i] != Contradiction::tension;
       if (found[i] == Contradiction::tension)
         opened_[k] = true;
-      else // a site that closes sticks first; one that opened in this loop slips, stick may be what pulled it open
-        now_.stick[k] =
-            found[i] == Contradiction::against_slip || (found[i] == Contradiction::penetration && !opened_[k]);
+      else // a site that opened in this loop slips when it closes: stick may be what pulled it open
+        now_.stick[k] = found[i] == Contradiction::against_slip ||
+                        (found[i] == Contradiction::penetration && !opened_[k] && held(k));
       ++ledger_[k].changes;
       ledger_[k].last = found[i];
     }
@@ -439,10 +464,15 @@ namespace Nodus
     committed_ = now_;
   }
 
+  void Status::set_state(const State &state)
+  {
+    now_ = state;
+    update_floor();
+  }
+
   void Status::roll_back()
   {
-    now_ = committed_;
-    update_floor();
+    set_state(committed_);
   }
 
   Status::Record Status::kept(const unsigned int site) const

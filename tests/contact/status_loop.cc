@@ -1,7 +1,8 @@
 // One slave node through the status loop: what contradicts a status, what follows, what the ledger says. A node that
-// opened in this loop and closes again slips: with stick on closing, stick that pulls the node open would cycle. One
-// that cycles is frozen where it contradicts its status least (open, by 7 * 0.01 of the largest pressure, not 0.3), and
-// an integration point that cycles holds its laws in the mean: friction contradicts its status no more.
+// opened in this loop and closes again slips: with stick on closing, stick that pulls the node open would cycle; so
+// does one that closes farther away than friction can hold: with friction mu and augmentation factor a, beyond mu d /
+// a. One that cycles is frozen where it contradicts its status least (open, by 7 * 0.01 of the largest pressure, not
+// 0.3), and an integration point that cycles holds its laws in the mean: friction contradicts its status no more.
 
 #include "../contact_fixture.h"
 
@@ -25,7 +26,11 @@ int main(int argc, char **argv)
   Status            &status = *fixture.status;
   const unsigned int n      = status.size();
 
-  const auto step = [&](const std::string &what, const double pressure, const double distance, const double Lambda)
+  const auto step = [&](const std::string &what,
+                        const double       pressure,
+                        const double       distance,
+                        const double       Lambda,
+                        const double       slip = 0.)
   {
     StatusInput input;
     input.pressure.assign(n, -1.);
@@ -35,6 +40,7 @@ int main(int argc, char **argv)
     input.pressure[0]          = pressure;
     input.distance[0]          = distance;
     input.Lambda[0][0]         = Lambda;
+    input.slip[0][1]           = slip;
     const auto          update = status.update(input);
     const StatusLedger &ledger = status.ledger(0);
     std::cout << what << ": " << name(status.status(0)) << ", changes " << ledger.changes << ", last contradiction "
@@ -56,6 +62,14 @@ int main(int argc, char **argv)
   step("under tension again", 1., 0., 0.);
   status.begin_loop();
   step("open and penetrating, open since before", 0., 0.1, 0.);
+  const double reach = 0.5 * 0.1 / ContactPairParameters().tangential_augmentation_factor;
+  for (const double slip : {0.99 * reach, -1.01 * reach})
+  {
+    status.assign(0, false, true, 0.);
+    status.begin_loop();
+    step(slip > 0. ? "closing within the reach of friction" : "closing beyond it", 0., 0.1, 0., slip);
+    status.assign(0, true, true, -1.);
+  }
   std::cout << "cycle period in the ledger: " << status.ledger(0).period << ", of another node "
             << status.ledger(1).period << std::endl;
   status.begin_increment();

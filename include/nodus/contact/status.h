@@ -131,8 +131,8 @@ namespace Nodus
     /// Sites that lost their partner open.
     void inherit(const Pairing &pairing);
 
-    /// Freezes mu lambda_s from the weighted pressure; returns max|lambda - lambda_s| / max|lambda| and its site.
-    /// Collective.
+    /// Freezes mu lambda_s from the weighted pressure; returns the largest change of a threshold, relative to the
+    /// largest threshold of its pair, and its site. Collective.
     struct Change
     {
       double       value = 0.;
@@ -169,6 +169,10 @@ namespace Nodus
     {
       resolved_ = part;
     }
+
+    /// Part of the friction limits that is in force, 0 to 1: 1 but for the way to a first iterate. As it grows from 0,
+    /// all closed sites slip, in the direction that they moved in without friction.
+    void set_friction_fraction(double fraction);
 
     /// Statuses forget which vectors this loop has visited. @p merged: updates follow single Newton iterations.
     void begin_loop(bool merged = false);
@@ -212,6 +216,21 @@ namespace Nodus
     };
     Violation frozen_violation(const StatusInput &input) const;
 
+    /// S, S_f, thresholds, accumulated slips and adjustments of all local sites.
+    struct State
+    {
+      std::vector<char>                  contact, stick;
+      std::vector<double>                threshold;
+      std::vector<std::array<double, 2>> slip;
+      std::vector<double>                adjustment;
+    };
+    /// The state at hand, and back to one of the same increment. Collective.
+    const State &state() const
+    {
+      return now_;
+    }
+    void set_state(const State &state);
+
     /// Empties the ledger, at the start of an increment.
     void                begin_increment();
     const StatusLedger &ledger(const unsigned int site) const
@@ -235,13 +254,6 @@ namespace Nodus
     void restore(std::vector<Record> records);
 
   private:
-    struct State
-    {
-      std::vector<char>                  contact, stick;
-      std::vector<double>                threshold;
-      std::vector<std::array<double, 2>> slip;
-      std::vector<double>                adjustment;
-    };
     bool has(bool (FrictionLimit::*property)() const) const
     {
       return std::any_of(
@@ -250,6 +262,10 @@ namespace Nodus
     bool interferes(const unsigned int pair) const
     {
       return pairs_[pair].initial_overclosure == ContactPairParameters::InitialOverclosure::interference;
+    }
+    double factor(const unsigned int site) const
+    {
+      return friction_fraction_ * friction_factor_[site];
     }
     bool              can_project(unsigned int pair) const;
     bool              can_lump(unsigned int pair) const;
@@ -270,7 +286,7 @@ namespace Nodus
     State                                     now_, committed_;
     std::vector<double>                       threshold_slope_, friction_factor_; ///< of the sites
     std::vector<double>                       threshold_floor_;                   ///< of the pairs
-    double                                    resolved_ = 0.;
+    double                                    resolved_ = 0., friction_fraction_ = 1.;
     std::vector<StatusLedger>                 ledger_;
     std::vector<std::vector<char>>            visited_;
     std::vector<char>                         opened_; ///< in this status loop

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <deque>
 #include <vector>
 
 namespace Nodus
@@ -14,7 +15,8 @@ namespace Nodus
   ///
   /// and x_next = G where that contracts by a factor of 2 at least. A map that contracts, or grows, by one factor in
   /// every direction is solved in one secant, which is what thresholds of friction do along a load path (factor -mu/s,
-  /// theory section 5.4).
+  /// theory section 5.4). Where the error hardly shrinks even so, it has several directions: then the last secants are
+  /// combined, x_next = G - sum_i gamma_i dG_i with the gamma that minimise |f - sum_i gamma_i df_i| (Anderson).
   class SecantAcceleration
   {
   public:
@@ -33,7 +35,14 @@ namespace Nodus
     }
 
   private:
+    struct Secant
+    {
+      std::vector<double> image, error; ///< changes of G and of f
+    };
+    std::vector<double> combined() const;
+
     MPI_Comm            communicator_;
+    std::deque<Secant>  secants_; ///< the oldest first
     std::vector<double> image_, error_;
     double              contraction_ = 0., norm_ = 0.;
   };
