@@ -65,7 +65,7 @@ int main(int argc, char **argv)
   const double reach = 0.5 * 0.1 / ContactPairParameters().tangential_augmentation_factor;
   for (const double slip : {0.99 * reach, -1.01 * reach})
   {
-    status.assign(0, false, true, 0.);
+    status.assign(0, false, true, -1.);
     status.begin_loop();
     step(slip > 0. ? "closing within the reach of friction" : "closing beyond it", 0., 0.1, 0., slip);
     status.assign(0, true, true, -1.);

@@ -71,8 +71,9 @@ int main(int argc, char **argv)
   check("friction over pressure", -grown.force[0] / grown.force[2], mu, 0.01);
   check("friction at most mu times the pressure", -grown.force[0] <= mu * grown.force[2]);
 
+  check("at most 60 iterations, failed attempts included", grown.counts.newton <= 60);
+
   use_loops(p);
   const Outcome loops = run(p);
-  check("three loops: force", loops.force[0], grown.force[0], 0.01);
-  check("iterations of three loops, more than 1.5 times as many", loops.counts.newton > 1.5 * grown.counts.newton);
+  check("three loops: force over that", loops.force[0] / grown.force[0], 1., 0.01);
 }
