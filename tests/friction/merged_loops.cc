@@ -1,6 +1,6 @@
 // Loops merged into Newton: every combination of modes gives the answer of the three nested loops (V3, plate on a rigid
-// plane, friction coefficient 1), all merged in few iterations; an increment that fails merged is done again, from
-// exactly the state before, with three loops.
+// plane, friction coefficient 1), all merged in few iterations; an increment that fails merged is done again with
+// a geometry loop and growing friction.
 
 #include "../cases.h"
 
@@ -88,18 +88,13 @@ int main(int argc, char **argv)
       std::cout << "    " << difference(merged, loops) << " " << merged.counts.newton << std::endl;
   }
 
-  // Too few iterations for the merged loops, enough for each pass of the nested ones.
+  // Too few iterations for the merged loops, enough for each step of growing friction.
   p.newton.maximum_iterations = 8;
   const Outcome fallback      = run(p);
   use_loops(p);
   const Outcome again = run(p);
   check("fallback is counted", fallback.counts.fallbacks == 2);
-  // On several ranks MUMPS adds up in an order that depends on timing: repeats of one binary on two ranks gave
-  // differences of 0, 2e-11 and 5e-9. The zero says that the increment starts again exactly where it was.
-  if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
-    check("fallback gives the answer of the loops to 1e-9", difference(fallback, again) <= 1e-9);
-  else
-    check("fallback gives the answer of the loops to 1e-6", difference(fallback, again) <= 1e-6);
+  check("fallback gives the answer of the loops to 1e-6", difference(fallback, again) <= 1e-6);
   if (std::getenv("NODUS_TEST_LOG") != nullptr)
     std::cout << "    " << difference(fallback, again) << std::endl;
 }
