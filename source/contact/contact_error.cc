@@ -53,6 +53,10 @@ namespace Nodus
       std::map<unsigned int, std::vector<Mark>> outgoing_;
     };
 
+    /// The middle of a face, but for a little: what the middle faces is often an edge between master faces, where
+    /// round-off would choose one.
+    constexpr double middle_xi = 0.51, middle_eta = 0.493;
+
     /// The point of the master that faces a point of a slave face; on a rigid surface it has no face.
     struct Opposite
     {
@@ -126,7 +130,7 @@ namespace Nodus
                       stick    = stick || field.status[i] == ContactStatus::stick;
                       slip     = slip || field.status[i] == ContactStatus::slip;
                     }
-                    const Opposite middle = opposite(geometry, p, f, 0.5, 0.5);
+                    const Opposite middle = opposite(geometry, p, f, middle_xi, middle_eta);
                     double         sum    = closed ? jump : 0.;
                     if (open && closed)
                       sum += traction;
@@ -134,7 +138,7 @@ namespace Nodus
                       sum += 0.25 * friction;
                     if (middle.found && closed)
                     {
-                      const double gap = middle.gap * geometry.slave[p].normal(f, 0.5, 0.5);
+                      const double gap = middle.gap * geometry.slave[p].normal(f, middle_xi, middle_eta);
                       if (!open || gap < 0.)
                         sum += E * E * gap * gap / A;
                     }
@@ -152,7 +156,7 @@ namespace Nodus
     for_own_faces(surfaces,
                   [&](const unsigned int p, const unsigned int f, unsigned int)
                   {
-                    const Projection master = opposite(geometry, p, f, 0.5, 0.5).master;
+                    const Projection master = opposite(geometry, p, f, middle_xi, middle_eta).master;
                     if (!master.found())
                       return;
                     const auto size = [](const SurfaceGeometry &side, const unsigned int face)
