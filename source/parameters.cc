@@ -150,13 +150,15 @@ namespace Nodus
                         "Function of deal.II's GridGenerator that makes the mesh [-], e.g. "
                         "subdivided_hyper_rectangle.",
                         Patterns::Anything());
-      prm.add_parameter("Generator arguments",
-                        body.generator_arguments,
-                        "All arguments of the generator but the mesh, separated by ':' [length where they are "
-                        "coordinates], e.g. 3,3,2 : 0,0,0 : 1,1,1 : true for subdivided_hyper_rectangle: cells, two "
-                        "corners, colorize. With colorize the sides x-, x+, y-, y+, z-, z+ of a box have the boundary "
-                        "ids 0 to 5, without it all have 0.",
-                        anything_separated_by(":"));
+      prm.add_parameter(
+          "Generator arguments",
+          body.generator_arguments,
+          "All arguments of the generator but the mesh, separated by ':' [length where they are "
+          "coordinates], e.g. 3,3,2 : 0,0,0 : 1,1,1 : true for subdivided_hyper_rectangle: cells, two "
+          "corners, colorize. With colorize the sides x-, x+, y-, y+, z-, z+ of a box have the boundary "
+          "ids 0 to 5, without it all have 0. cylinder: radius : half of the length along x (ids 0 hull, 1 "
+          "x-, 2 x+); hyper_ball: centre : radius. --validate prints the ids that there are.",
+          anything_separated_by(":"));
       prm.add_parameter("Scale", body.scale, "Factor on all coordinates, before the rotation [-].", positive);
       prm.add_parameter("Rotation axis", body.rotation_axis, "Axis of the rotation about the origin [-].");
       prm.add_parameter("Rotation angle", body.rotation_angle, "Angle of the rotation [degrees].", any_number);
@@ -167,11 +169,12 @@ namespace Nodus
                         body.local_refinement,
                         "Times that cells are split after that where Refine where holds at their centres [-].",
                         count);
-      prm.add_parameter("Refine where",
-                        body.refine_where,
-                        "Expression of x, y, z [length] that is not zero where cells are refined locally, e.g. "
-                        "x*x + y*y < 4 [-].",
-                        Patterns::Anything());
+      prm.add_parameter(
+          "Refine where",
+          body.refine_where,
+          "Expression of x, y, z [length], in place, that is not zero where cells are refined locally, e.g. "
+          "x*x + y*y < 4 [-]; asked at the centres of the cells before each time that they are split.",
+          Patterns::Anything());
       add_choice(
           prm,
           "Volumetric treatment",
@@ -232,7 +235,8 @@ namespace Nodus
           "Value",
           condition.value,
           "Prescribed value [as Type says]: expressions of x, y, z [length] and the time t [-], separated by "
-          "';', one for each component or one for all. Displacements count from the reference position.");
+          "';', one for each component, or one that holds for all of them. Displacements count from the reference "
+          "position. A total force F is a traction F/A, A the area that --validate prints.");
       const std::string how = "one of the Interval ends";
       prm.add_parameter("Active from",
                         condition.active_from,

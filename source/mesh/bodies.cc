@@ -345,18 +345,31 @@ namespace Nodus
     std::vector<std::unique_ptr<dealii::FunctionParser<dim>>> where;
     for (const auto &body : parameters)
       where.push_back(body.local_refinement > 0 ? parse_expression(body.refine_where) : nullptr);
+    std::vector<unsigned int> n_local(parameters.size(), 0); // cells that are split locally
     for (unsigned int level = 0; level < n_levels; ++level)
     {
       for (const auto &cell : triangulation_.active_cell_iterators())
         if (cell->is_locally_owned())
         {
-          const BodyParameters &body = parameters[cell->material_id()];
-          if (level < body.global_refinement || (level < body.global_refinement + body.local_refinement &&
-                                                 where[cell->material_id()]->value(cell->center()) != 0.))
+          const unsigned int    b    = cell->material_id();
+          const BodyParameters &body = parameters[b];
+          if (level < body.global_refinement)
             cell->set_refine_flag();
+          else if (level < body.global_refinement + body.local_refinement && where[b]->value(cell->center()) != 0.)
+          {
+            cell->set_refine_flag();
+            ++n_local[b];
+          }
         }
       triangulation_.execute_coarsening_and_refinement();
     }
+    dealii::Utilities::MPI::sum(n_local, triangulation_.get_communicator(), n_local);
+    for (unsigned int b = 0; b < parameters.size(); ++b)
+      if (parameters[b].local_refinement > 0 && n_local[b] == 0)
+        throw InputError(
+            "Body " + std::to_string(b + 1) + " ('" + names_[b] + "'): 'Refine where' = '" +
+            parameters[b].refine_where +
+            "' holds at the centre of no cell; let it reach half a cell deeper, or drop 'Local refinement'");
   }
 
   void Bodies::balance(const std::function<unsigned int(const Triangulation::cell_iterator &)> &weight)

@@ -8,8 +8,26 @@
 
 namespace Nodus
 {
+  namespace
+  {
+    /// muParser takes the last of several expressions, without a word.
+    bool has_comma_outside_functions(const std::string &expression)
+    {
+      int depth = 0;
+      for (const char c : expression)
+      {
+        depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+        if (c == ',' && depth == 0)
+          return true;
+      }
+      return false;
+    }
+  } // namespace
+
   std::string expression_complaint(const std::string &expression, const std::string &variables)
   {
+    if (has_comma_outside_functions(expression))
+      return "a ',' outside of a function; several expressions are separated by ';'";
     // deal.II prints its own copy of the complaint to std::cerr.
     std::ostringstream    unwanted;
     std::streambuf *const screen = std::cerr.rdbuf(unwanted.rdbuf());
