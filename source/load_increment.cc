@@ -61,7 +61,7 @@ namespace Nodus
     std::vector<Attempt> attempts{{asked, false, ""}};
     if (asked.geometry && inner.any())
       attempts.push_back({inner, false, "a geometry loop"});
-    if (slides && asked.status)
+    if (slides && asked.status && time != path.time()) // on a new mesh friction is there already
       attempts.push_back({inner, true, "a geometry loop and growing friction"});
     if (asked.any())
       attempts.push_back({MergedLoops(), false, "three loops"});

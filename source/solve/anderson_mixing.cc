@@ -1,8 +1,5 @@
 #include <nodus/solve/anderson_mixing.h>
-
-#include <Eigen/Dense>
-
-#include <cmath>
+#include <nodus/solve/least_combination.h>
 
 namespace Nodus
 {
@@ -10,8 +7,6 @@ namespace Nodus
   {
     /// Steps that are mixed.
     constexpr unsigned int depth = 5;
-    /// Of the scaled normal equations: directions below do not count.
-    constexpr double rank_tolerance = 1e-8;
   } // namespace
 
   const Vector &AndersonMixing::next(const Vector &correction, const bool mix)
@@ -31,20 +26,16 @@ namespace Nodus
 
     const unsigned int n = pairs_.size();
     Eigen::MatrixXd    A(n, n);
-    Eigen::VectorXd    rhs(n), scale(n);
+    Eigen::VectorXd    rhs(n);
     for (unsigned int i = 0; i < n; ++i)
     {
       for (unsigned int j = 0; j <= i; ++j)
         A(i, j) = A(j, i) = pairs_[i].second * pairs_[j].second;
-      rhs(i)   = pairs_[i].second * correction;
-      scale(i) = A(i, i) > 0. ? 1. / std::sqrt(A(i, i)) : 0.;
+      rhs(i) = pairs_[i].second * correction;
     }
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    solver.setThreshold(rank_tolerance);
-    solver.compute(scale.asDiagonal() * A * scale.asDiagonal());
-    const Eigen::VectorXd scaled = solver.solve(scale.cwiseProduct(rhs));
+    const Eigen::VectorXd gamma = least_combination(A, rhs);
     for (unsigned int i = 0; i < n; ++i)
-      step_.add(-scale(i) * scaled(i), pairs_[i].first, -scale(i) * scaled(i), pairs_[i].second);
+      step_.add(-gamma(i), pairs_[i].first, -gamma(i), pairs_[i].second);
     return step_;
   }
 } // namespace Nodus

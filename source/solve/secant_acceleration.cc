@@ -1,6 +1,5 @@
+#include <nodus/solve/least_combination.h>
 #include <nodus/solve/secant_acceleration.h>
-
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +17,6 @@ namespace Nodus
     constexpr double slow_contraction = 0.8;
     /// Secants kept, and from how many on they are combined.
     constexpr unsigned int depth = 5, fewest = 3;
-    /// Of the scaled normal equations: directions below do not count.
-    constexpr double rank_tolerance = 1e-8;
   } // namespace
 
   std::vector<double> SecantAcceleration::next(const std::vector<double> &value, const std::vector<double> &image)
@@ -74,18 +71,14 @@ namespace Nodus
       }
     dealii::Utilities::MPI::sum(sums, communicator_, sums);
     Eigen::MatrixXd A(n, n);
-    Eigen::VectorXd rhs(n), scale(n);
+    Eigen::VectorXd rhs(n);
     for (unsigned int i = 0; i < n; ++i)
     {
       for (unsigned int j = 0; j < n; ++j)
         A(i, j) = sums[i * n + j];
-      rhs(i)   = sums[n * n + i];
-      scale(i) = A(i, i) > 0. ? 1. / std::sqrt(A(i, i)) : 0.;
+      rhs(i) = sums[n * n + i];
     }
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    solver.setThreshold(rank_tolerance);
-    solver.compute(scale.asDiagonal() * A * scale.asDiagonal());
-    const Eigen::VectorXd gamma  = scale.cwiseProduct(solver.solve(scale.cwiseProduct(rhs)));
+    const Eigen::VectorXd gamma  = least_combination(A, rhs);
     std::vector<double>   result = image_;
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int l = 0; l < result.size(); ++l)

@@ -94,7 +94,7 @@ int main(int argc, char **argv)
   use_loops(p);
   const Outcome again = run(p);
   check("fallback is counted", fallback.counts.fallbacks == 2);
-  check("fallback gives the answer of the loops to 1e-6", difference(fallback, again) <= 1e-6);
+  check("fallback gives the answer of the loops to 1e-7", difference(fallback, again) <= 1e-7);
   if (std::getenv("NODUS_TEST_LOG") != nullptr)
     std::cout << "    " << difference(fallback, again) << std::endl;
 
