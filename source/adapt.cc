@@ -104,8 +104,9 @@ namespace Nodus
     {
       surfaces->fetch_masters(solution.block(0));
       const std::vector<Point> X = surfaces->positions(std::vector<Vector3>(surfaces->nodes().size()));
-      const ContactGeometry    at_start(parameters.contact_pairs, *surfaces, X);
-      RefinementIndicator      indicator(bodies.triangulation());
+      surfaces->place_carried_masters(X);
+      const ContactGeometry at_start(parameters.contact_pairs, *surfaces, X);
+      RefinementIndicator   indicator(bodies.triangulation());
       mark_near_contact(distance, *surfaces, at_start, indicator);
       if (!refine(indicator, false))
         return;

@@ -40,7 +40,8 @@ namespace Nodus
     const auto              &pairs = parameters.contact_pairs;
     const std::vector<Point> X     = surfaces->positions(std::vector<Vector3>(surfaces->nodes().size()));
     paired_at                      = state.x;
-    geometry                       = std::make_unique<ContactGeometry>(pairs, *surfaces, paired_at);
+    surfaces->place_carried_masters(paired_at);
+    geometry = std::make_unique<ContactGeometry>(pairs, *surfaces, paired_at);
     averaged.compute(pairs, *surfaces, *geometry, paired_at, X);
     pairing.project(pairs, *surfaces, *geometry, averaged);
     jump.build(pairs, *surfaces, *geometry, pairing, averaged);

@@ -183,9 +183,11 @@ namespace Nodus
           "How the change of volume is integrated [-]: standard, at each point; mean dilatation, as the constant "
           "(Degree = 1) or linear (Degree = 2) mean in each cell, which does not lock where the material is "
           "nearly incompressible: rubber, metal that yields.");
-      prm.add_parameter("Rigid",
-                        body.rigid,
-                        "Whether the body is rigid and moves as the following keys say; it has no material [-].");
+      prm.add_parameter(
+          "Rigid",
+          body.rigid,
+          "Whether the body is rigid and moves as the following keys say [-]; it has no material. One that "
+          "carries surfaces in closed form alone (Master surface of contact pairs) needs no mesh either.");
       add_motion(prm, "Rigid ", body.motion, "", "the origin");
       add_components(prm,
                      "Rigid free",

@@ -149,12 +149,19 @@ namespace Nodus
 
     void check(const Section &section, const BodyParameters &body)
     {
-      section.require(!body.mesh_file.empty() || !body.generator.empty(),
-                      "Mesh file",
-                      "is missing; give either Mesh file or Generator");
+      section.require(body.has_mesh() || body.rigid, "Mesh file", "is missing; give either Mesh file or Generator");
       section.require(body.mesh_file.empty() || body.generator.empty(),
                       "Generator",
                       "is given besides Mesh file; remove one of the two");
+      if (!body.has_mesh())
+        for (const auto &[key, given] : {std::make_pair("Generator arguments", !body.generator_arguments.empty()),
+                                         std::make_pair("Scale", body.scale != 1.),
+                                         std::make_pair("Rotation angle", body.rotation_angle != 0.),
+                                         std::make_pair("Translation", body.translation != Vector3()),
+                                         std::make_pair("Global refinement", body.global_refinement > 0),
+                                         std::make_pair("Local refinement", body.local_refinement > 0)})
+          section.require(
+              !given, key, "has no effect on a rigid body without a mesh; remove it, or give Mesh file or Generator");
       if (!body.mesh_file.empty())
       {
         section.require(std::filesystem::is_regular_file(body.mesh_file),
@@ -309,16 +316,33 @@ namespace Nodus
         "Rigid",
         "is true for all bodies; there is nothing to solve, leave one deformable");
     for (unsigned int i = 0; i < boundary_conditions.size(); ++i)
-      Nodus::check({file, "Boundary condition " + std::to_string(i + 1)},
-                   boundary_conditions[i],
-                   n_bodies,
-                   load_stepping.interval_ends);
+    {
+      const Section section{file, "Boundary condition " + std::to_string(i + 1)};
+      Nodus::check(section, boundary_conditions[i], n_bodies, load_stepping.interval_ends);
+      for (unsigned int b = 0; b < n_bodies; ++b)
+        section.require(bodies[b].has_mesh() ||
+                            (boundary_conditions[i].region.body != b + 1 &&
+                             (boundary_conditions[i].region.body > 0 ||
+                              boundary_conditions[i].type != BoundaryConditionParameters::Type::body_force)),
+                        "Body",
+                        "is or includes body " + std::to_string(b + 1) +
+                            ", which has no mesh; leave it out, and drive it by Rigid translation or Rigid force");
+    }
     for (unsigned int i = 0; i < contact_pairs.size(); ++i)
     {
       const Section section{file, "Contact pair " + std::to_string(i + 1)};
       Nodus::check(section, contact_pairs[i], n_bodies);
-      section.require(!bodies[contact_pairs[i].slave.body - 1].rigid ||
-                          (!contact_pairs[i].has_rigid_master() && !bodies[contact_pairs[i].master.body - 1].rigid),
+      const ContactPairParameters &pair   = contact_pairs[i];
+      const BodyParameters        &slave  = bodies[pair.slave.body - 1];
+      const BodyParameters *const  master = pair.master.body > 0 ? &bodies[pair.master.body - 1] : nullptr;
+      section.require(slave.has_mesh(), "Slave body", "has no mesh; give the number of a body that has one");
+      section.require(pair.has_rigid_master() || master->has_mesh(),
+                      "Master body",
+                      "has no mesh; say what surface it carries with Master surface, or give it a mesh");
+      section.require(!pair.has_carried_master() || master->rigid,
+                      "Master body",
+                      "is not rigid and cannot carry a rigid surface; remove it, or set 'Rigid = true' there");
+      section.require(!slave.rigid || !(pair.has_rigid_master() || master->rigid),
                       "Slave body",
                       "is rigid, as is the master: neither can give way; remove the pair");
       for (unsigned int j = 0; j < i; ++j)
@@ -327,6 +351,16 @@ namespace Nodus
                         "names faces that are already slaves of 'Contact pair " + std::to_string(j + 1) +
                             "'; a face can be slave only once");
     }
+    for (unsigned int b = 0; b < n_bodies; ++b)
+      Section{file, "Body " + std::to_string(b + 1)}.require(
+          bodies[b].has_mesh() ||
+              std::any_of(contact_pairs.begin(),
+                          contact_pairs.end(),
+                          [b](const ContactPairParameters &pair) { return pair.master.body == b + 1; }),
+          "Mesh file",
+          "is missing, and the body carries no surface either; give a mesh, or a contact pair with a Master surface "
+          "and 'Master body = " +
+              std::to_string(b + 1) + "'");
     check_names(file, "Body", bodies);
     check_names(file, "Boundary condition", boundary_conditions);
     check_names(file, "Contact pair", contact_pairs);

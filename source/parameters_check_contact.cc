@@ -141,8 +141,7 @@ namespace Nodus
         return;
       }
       const std::string shape = text_of(surface.shape);
-      for (const auto &[key, given] : {std::make_pair("Master body", pair.master.body != 0),
-                                       std::make_pair("Master boundary ids", !pair.master.boundary_ids.empty()),
+      for (const auto &[key, given] : {std::make_pair("Master boundary ids", !pair.master.boundary_ids.empty()),
                                        std::make_pair("Master where", !pair.master.where.empty())})
         section.require(!given,
                         key,
@@ -161,6 +160,15 @@ namespace Nodus
                           (surface.shape == Shape::cylinder ? "the direction of the cylinder"
                                                             : "the normal out of the rigid body") +
                           ", for example 0, 0, 1");
+      section.require(pair.master.body <= n_bodies,
+                      "Master body",
+                      "is " + std::to_string(pair.master.body) +
+                          "; give the number of the rigid body that carries the " + shape + ", 1 to " +
+                          std::to_string(n_bodies) + ", or 0 for none");
+      section.require(!pair.has_carried_master() || !is_given(surface.motion),
+                      "Master translation",
+                      "and the like have no effect on a " + shape +
+                          " that moves with its Master body; remove them, or say there how it moves");
       check(section, surface.motion, "Master ", surface.motion.rotation_axis == Vector3() ? surface.axis : Vector3());
     }
   } // namespace

@@ -160,8 +160,10 @@ namespace Nodus
         "Master surface",
         surface.shape,
         shape_names,
-        "What the slave touches [-]: faces of a mesh, or a rigid surface in closed form, without Master body and "
-        "boundary ids. A paraboloid is one of revolution.");
+        "What the slave touches [-]: faces of a mesh, or a rigid surface in closed form, without boundary ids. It "
+        "moves "
+        "as Master translation and Master rotation say, or, with a Master body, with that rigid body. A paraboloid is "
+        "one of revolution.");
     prm.add_parameter("Master point",
                       surface.point,
                       "Rigid surface: a point of the plane, the centre of the sphere, a point on the axis of the "

@@ -192,9 +192,13 @@ namespace Nodus
       const auto         ends     = p.bodies.bounding_box(b).get_boundary_points();
       const Vector3      size     = ends.second - ends.first;
       std::ostringstream text;
-      text << "  body " << b + 1 << " (" << p.bodies.name(b) << "): " << counted(cells[b], "cell") << ", " << size[0]
-           << " x " << size[1] << " x " << size[2] << " from " << coordinates(ends.first) << " to "
-           << coordinates(ends.second) << ", boundary ids " << joined(p.bodies.boundary_ids(b), ", ") << "; ";
+      text << "  body " << b + 1 << " (" << p.bodies.name(b) << "): ";
+      if (p.bodies.has_mesh(b))
+        text << counted(cells[b], "cell") << ", " << size[0] << " x " << size[1] << " x " << size[2] << " from "
+             << coordinates(ends.first) << " to " << coordinates(ends.second) << ", boundary ids "
+             << joined(p.bodies.boundary_ids(b), ", ") << "; ";
+      else
+        text << "no mesh; ";
       if (parameters.bodies[b].rigid)
       {
         text << "rigid";

@@ -107,6 +107,11 @@ namespace Nodus
     std::string               refine_where;          ///< ... where this muParser predicate holds at cell centres
     VolumetricTreatment       volumetric_treatment = VolumetricTreatment::standard;
     MaterialParameters        material; ///< of a body that is not rigid
+    /// A rigid body may go without: it carries surfaces in closed form.
+    bool has_mesh() const
+    {
+      return !mesh_file.empty() || !generator.empty();
+    }
 
     bool                       rigid = false;
     PrescribedMotionParameters motion;     ///< of a rigid body; keys "Rigid translation", ...
@@ -239,6 +244,11 @@ namespace Nodus
 
     MasterSurfaceParameters master_surface; ///< instead of the master faces; keys "Master surface", ...
 
+    /// One in closed form that moves with a rigid body of the model.
+    bool has_carried_master() const
+    {
+      return has_rigid_master() && master.body > 0;
+    }
     bool has_rigid_master() const
     {
       return master_surface.shape != MasterSurfaceParameters::Shape::mesh;

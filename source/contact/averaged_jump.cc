@@ -117,7 +117,7 @@ namespace Nodus
     struct Partner
     {
       unsigned int          n     = 0;       ///< nodes
-      const unsigned int   *nodes = nullptr; ///< of the master face, none of a rigid one
+      const unsigned int   *nodes = nullptr; ///< of the master face, or of what carries a rigid one
       std::array<double, 9> weights;
       Vector3               normal; ///< unit, from slave to master
       Vector3               offset; ///< of a smoothed surface
@@ -142,7 +142,15 @@ namespace Nodus
     Partner rigid_partner(const RigidSurface &master, const Point &p)
     {
       const RigidPoint point = master.closest(p);
-      return {0, nullptr, {}, -point.normal, Vector3(), {point.x, master.moved(point.x)}};
+      Partner          partner{0, nullptr, {}, -point.normal, Vector3(), master.part(point.x)};
+      if (const RigidCarrier *const carrier = master.carrier())
+      {
+        const RigidCarrier::Weights weights = carrier->weights(point.x);
+        std::copy(weights.begin(), weights.end(), partner.weights.begin());
+        partner.n     = weights.size();
+        partner.nodes = carrier->nodes().data();
+      }
+      return partner;
     }
 
     /// Integrates one face; @p all_psi is overwritten.
@@ -162,6 +170,8 @@ namespace Nodus
       const unsigned int        m    = face.slaves.size();
       FaceRows                  result{0, face.number, {}, {}, {}, {}};
       std::vector<unsigned int> nodes(face.nodes);
+      if (rigid != nullptr && rigid->carrier() != nullptr)
+        nodes.insert(nodes.end(), rigid->carrier()->nodes().begin(), rigid->carrier()->nodes().end());
       for (const MortarPoint &point : points)
         if (rigid == nullptr)
           for (const unsigned int node : master.face(point.master.face).nodes)

@@ -85,12 +85,23 @@ namespace Nodus
   }
 
   /// The point moves on the surface along the principal directions.
-  void GeometryTangent::project_on_rigid(const RigidPoint &master, ProjectedPoint &point) const
+  void GeometryTangent::project_on_rigid(const RigidSurface &master, const Point &p, ProjectedPoint &point) const
   {
+    const RigidPoint closest = master.closest(p);
     for (unsigned int alpha = 0; alpha < 2; ++alpha)
     {
-      point.tangent[alpha] = master.direction[alpha];
-      point.dual[alpha]    = master.slide() * master.direction[alpha];
+      point.tangent[alpha] = closest.direction[alpha];
+      point.dual[alpha]    = closest.slide() * closest.direction[alpha];
+    }
+    if (const RigidCarrier *const carrier = master.carrier())
+    {
+      const RigidCarrier::Weights weights = carrier->weights(p);
+      for (unsigned int i = 0; i < weights.size(); ++i)
+      {
+        point.motion.push_back({carrier->nodes()[i], -weights[i]});
+        for (unsigned int alpha = 0; alpha < 2; ++alpha)
+          point.shape[alpha].push_back({carrier->nodes()[i], carrier->gradients()[i] * point.tangent[alpha]});
+      }
     }
   }
 
@@ -104,9 +115,21 @@ namespace Nodus
       return derivative;
     if (geometry_.rigid[p] != nullptr)
     {
-      const RigidPoint point = geometry_.rigid[p]->closest(geometry_.position(surfaces_, site));
+      const Point      x     = geometry_.position(surfaces_, site);
+      const RigidPoint point = geometry_.rigid[p]->closest(x);
       for (const Entry &e : slave_point(site).motion)
         Nodus::add(derivative, e.node, -e.weight * point.normal_derivative());
+      if (const RigidCarrier *const carrier = geometry_.rigid[p]->carrier())
+      {
+        const RigidCarrier::Weights weights = carrier->weights(x);
+        for (unsigned int i = 0; i < weights.size(); ++i)
+        {
+          Matrix3 value = weights[i] * point.normal_derivative();
+          for (unsigned int c = 0; c < dim; ++c) // the normal turns with the body
+            value[c][c] -= carrier->gradients()[i] * point.normal;
+          Nodus::add(derivative, carrier->nodes()[i], value);
+        }
+      }
       return derivative;
     }
     if (!master.found())
@@ -288,7 +311,7 @@ namespace Nodus
                   point.motion);
         const RigidSurface *const rigid = geometry_.rigid[face.pair];
         if (rigid != nullptr)
-          project_on_rigid(rigid->closest(geometry_.slave[face.pair].at(face.face, p.xi, p.eta).x), point);
+          project_on_rigid(*rigid, geometry_.slave[face.pair].at(face.face, p.xi, p.eta).x, point);
         else
           project(face.pair, p.master, point);
         add_point(point, residual, blocks);
@@ -311,7 +334,7 @@ namespace Nodus
       {
         ProjectedPoint point = slave_point(s);
         if (rigid != nullptr)
-          project_on_rigid(rigid->closest(geometry_.position(surfaces_, s)), point);
+          project_on_rigid(*rigid, geometry_.position(surfaces_, s), point);
         else
           project(p, pairing_[s].master, point);
         point.sites.emplace_back(s, 1.);

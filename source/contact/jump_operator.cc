@@ -89,9 +89,10 @@ namespace Nodus
     };
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
     {
-      const unsigned int p        = surfaces.pair(s);
-      const bool         averages = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
-      const Projection  &master   = pairing[s].master;
+      const unsigned int        p        = surfaces.pair(s);
+      const bool                averages = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
+      const Projection         &master   = pairing[s].master;
+      const RigidSurface *const rigid    = geometry.rigid[p];
       middle_.push_back(entries_.size());
       first_of_part = entries_.size();
       offset_.emplace_back();
@@ -112,13 +113,14 @@ namespace Nodus
                          entries_.data() + entries_.size(),
                          offset_.back());
       }
-      else if (pairing[s].found && (master.found() || geometry.rigid[p] != nullptr))
+      else if (pairing[s].found && (master.found() || rigid != nullptr))
       {
-        if (geometry.rigid[p] != nullptr)
+        Point on_rigid;
+        if (rigid != nullptr)
         {
-          const RigidPoint point = geometry.rigid[p]->closest(geometry.position(surfaces, s));
-          rigid_[s]              = {point.x, geometry.rigid[p]->moved(point.x)};
-          offset_.back()         = -rigid_[s].x;
+          on_rigid       = rigid->closest(geometry.position(surfaces, s)).x;
+          rigid_[s]      = rigid->part(on_rigid);
+          offset_.back() = -rigid_[s].x;
         }
         else
           offset_.back() = -geometry.master[p].offset(master.face, master.xi, master.eta);
@@ -131,6 +133,12 @@ namespace Nodus
         else
           entries_.push_back({surfaces.slave_nodes()[s].node, 1.});
         middle_.back() = first_of_part = entries_.size();
+        if (rigid != nullptr && rigid->carrier() != nullptr)
+        {
+          const RigidCarrier::Weights weights = rigid->carrier()->weights(on_rigid);
+          for (unsigned int i = 0; i < weights.size(); ++i)
+            add(rigid->carrier()->nodes()[i], -weights[i]);
+        }
         if (master.found())
           add_shape(geometry.master[p].face(master.face), FaceShape(surfaces.degree(), master.xi, master.eta), -1.);
       }

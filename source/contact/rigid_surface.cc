@@ -65,10 +65,25 @@ namespace Nodus
 
   void RigidSurface::set_increment(const double begin, const double end)
   {
+    if (carrier_)
+      return;
     before_ = motion_.at(begin);
-    now_    = motion_.at(end);
-    point_  = now_.to(parameters_.point);
-    axis_   = now_.R * parameters_.axis;
+    place(motion_.at(end));
+  }
+
+  void RigidSurface::follow_carrier(const std::vector<Point> &x)
+  {
+    if (!carrier_)
+      return;
+    carrier_->place(x);
+    place(carrier_->placement());
+  }
+
+  void RigidSurface::place(const Placement &placement)
+  {
+    now_   = placement;
+    point_ = now_.to(parameters_.point);
+    axis_  = now_.R * parameters_.axis;
     if (axis_.norm() > 0.)
       axis_ /= axis_.norm();
   }

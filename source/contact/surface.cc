@@ -55,6 +55,7 @@ namespace Nodus
                            " boundary ids' and '" + (side == slave_side ? "Slave" : "Master") + " where'");
 
     take_slave_faces();
+    take_carriers(bodies, dof_handler);
     make_points();
     throw_everywhere<InputError>(repeated_face(), communicator_);
     number_sites();
@@ -237,9 +238,28 @@ namespace Nodus
     for (const FaceRecord &record : records)
       add_nodes(record);
     link_followers(records);
-    n_slave_side_nodes_ = nodes_.size();
     for (const FaceRecord &record : records)
       slave_faces_[record.pair].push_back(make_face(record));
+  }
+
+  /// Their nodes are among those of every rank.
+  void ContactSurfaces::take_carriers(const Bodies &bodies, const dealii::DoFHandler<dim> &dof_handler)
+  {
+    for (unsigned int p = 0; p < n_pairs(); ++p)
+    {
+      if (!pairs_[p].has_carried_master())
+        continue;
+      RigidCarrier                                    carrier(bodies, pairs_[p].master.body - 1, dof_handler);
+      std::array<unsigned int, RigidCarrier::n_nodes> nodes;
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+      {
+        add_node(carrier.dof(i), &carrier.X(i)[0]);
+        nodes[i] = node(carrier.dof(i));
+      }
+      carrier.set_nodes(nodes);
+      rigid_masters_[p]->set_carrier(carrier);
+    }
+    n_slave_side_nodes_ = nodes_.size();
   }
 
   void ContactSurfaces::make_points()
@@ -338,6 +358,13 @@ namespace Nodus
     for (auto &master : rigid_masters_)
       if (master)
         master->set_increment(begin, end);
+  }
+
+  void ContactSurfaces::place_carried_masters(const std::vector<Point> &positions)
+  {
+    for (auto &master : rigid_masters_)
+      if (master)
+        master->follow_carrier(positions);
   }
 
   bool ContactSurfaces::fetch_masters(const Vector &u)
@@ -456,18 +483,20 @@ namespace Nodus
     if (layout_.n_rigid == 0)
       return;
     rigid_body_.assign(nodes_.size(), dealii::numbers::invalid_unsigned_int);
-    const auto take = [&](const std::vector<SurfaceFace> &faces, const unsigned int body)
+    const auto take = [&](const auto &nodes, const unsigned int body)
     {
-      const unsigned int number = rigid_number_[body - 1];
-      for (const SurfaceFace &face : faces)
-        for (const unsigned int node : face.nodes)
-          expand(node, 1., [&](const unsigned int free_node, double) { rigid_body_[free_node] = number; });
+      for (const unsigned int node : nodes)
+        expand(
+            node, 1., [&](const unsigned int free_node, double) { rigid_body_[free_node] = rigid_number_[body - 1]; });
     };
     for (unsigned int p = 0; p < pairs_.size(); ++p)
     {
-      take(slave_faces_[p], pairs_[p].slave.body);
-      if (!rigid_masters_[p])
-        take(master_faces_[p], pairs_[p].master.body);
+      for (const SurfaceFace &face : slave_faces_[p])
+        take(face.nodes, pairs_[p].slave.body);
+      for (const SurfaceFace &face : master_faces_[p])
+        take(face.nodes, pairs_[p].master.body);
+      if (const RigidCarrier *const carrier = rigid_masters_[p] ? rigid_masters_[p]->carrier() : nullptr)
+        take(carrier->nodes(), pairs_[p].master.body);
     }
   }
 

@@ -275,7 +275,8 @@ namespace Nodus
         (slave ? result.slave_force : result.master_force) += force;
         (slave ? result.slave_moment : result.master_moment) += moment;
       }
-      if (surfaces.rigid_master(surfaces.pair(i)) != nullptr)
+      const RigidSurface *const rigid = surfaces.rigid_master(surfaces.pair(i));
+      if (rigid != nullptr && rigid->carrier() == nullptr)
       {
         result.master_force += residual.jump[i];
         result.master_moment += dealii::cross_product_3d(jump.rigid(i).x, residual.jump[i]);

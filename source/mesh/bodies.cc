@@ -230,6 +230,27 @@ namespace Nodus
       renumber(mesh.boundary.boundary_quads);
     }
 
+    /// What stands for a rigid body without a mesh: one cell around the vertices of the others.
+    CoarseMesh cell_around(const std::vector<Point> &vertices)
+    {
+      const dealii::BoundingBox<dim> box(vertices);
+      CoarseMesh                     mesh;
+      mesh.cells.resize(1);
+      for (const unsigned int v : dealii::GeometryInfo<dim>::vertex_indices())
+      {
+        mesh.vertices.push_back(box.vertex(v));
+        mesh.cells[0].vertices[v] = v;
+      }
+      for (const unsigned int f : dealii::GeometryInfo<dim>::face_indices())
+      {
+        mesh.boundary.boundary_quads.emplace_back();
+        for (unsigned int v = 0; v < 4; ++v)
+          mesh.boundary.boundary_quads[f].vertices[v] = dealii::GeometryInfo<dim>::face_to_cell_vertices(f, v);
+        mesh.boundary.boundary_quads[f].boundary_id = Bodies::no_boundary;
+      }
+      return mesh;
+    }
+
     std::string display_name(const BodyParameters &parameters, const unsigned int index)
     {
       return parameters.name.empty() ? "body " + std::to_string(index + 1) : parameters.name;
@@ -273,6 +294,9 @@ namespace Nodus
       {
         const BodyParameters &body = parameters[b];
         names_.push_back(display_name(body, b));
+        has_mesh_.push_back(body.has_mesh() || !body.rigid);
+        if (!has_mesh_[b])
+          continue;
         if (body.mesh_file.empty() == body.generator.empty())
           throw InputError("give either 'Mesh file' or 'Generator'");
 
@@ -303,6 +327,11 @@ namespace Nodus
         throw InputError("Body " + std::to_string(b + 1) +
                          (parameters[b].name.empty() ? "" : " (" + parameters[b].name + ")") + ": " + error.what());
       }
+
+    const CoarseMesh around = cell_around(all.vertices);
+    for (unsigned int b = 0; b < parameters.size(); ++b)
+      if (!has_mesh_[b])
+        append(around, b, all);
 
     // merge_triangulations would lose the boundary ids and weld bodies that touch.
     triangulation_.create_triangulation(all.vertices, all.cells, all.boundary);
@@ -385,7 +414,7 @@ namespace Nodus
     boundary_ids_.resize(size());
     for (const auto &cell : triangulation_.cell_iterators_on_level(0))
       for (const auto &face : cell->face_iterators())
-        if (face->at_boundary())
+        if (face->at_boundary() && face->boundary_id() != no_boundary)
           boundary_ids_[cell->material_id()].insert(face->boundary_id());
 
     // ... but a curved body grows when it is refined, and the fine vertices are spread over the ranks. Cells of

@@ -99,7 +99,8 @@ namespace Nodus
     std::transform(indicator.squared_error.begin(), indicator.squared_error.end(), error.begin(), rounded);
     const auto level_of = [&](const auto &cell)
     { return cell->level() - static_cast<int>(bodies[cell->material_id()].global_refinement); };
-    const auto allowed = [&](const auto &cell) { return level_of(cell) < static_cast<int>(parameters.maximum_level); };
+    const auto allowed = [&](const auto &cell)
+    { return level_of(cell) < static_cast<int>(parameters.maximum_level) && bodies[cell->material_id()].has_mesh(); };
 
     if (sum_over_owned(triangulation, indicator.squared_error) > 0.)
     {

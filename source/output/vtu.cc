@@ -227,7 +227,7 @@ namespace Nodus
 
     std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
     for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
+      if (cell->is_locally_owned() && bodies.has_mesh(cell->material_id()))
       {
         nodes.reinit(cell);
         cell->get_dof_indices(dofs);

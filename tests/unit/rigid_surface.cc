@@ -108,7 +108,7 @@ int main(int argc, char **argv)
         off                = std::max(off, std::abs(equation(shape, sign, back(c.x))));
         across             = std::max(across, (p - c.x - c.height * c.normal).norm());
         length             = std::max(length, std::abs(c.normal.norm() - 1.));
-        motion             = std::max(motion, (rigid.moved(c.x) - (c.x - back(c.x))).norm());
+        motion             = std::max(motion, (rigid.part(c.x).moved - (c.x - back(c.x))).norm());
         // outward: along the normal, one gets away from the rigid body
         const double inside = equation(shape, sign, back(c.x + 1e-3 * c.normal));
         outward             = outward && (inside > 0.) != (cavity && shape != Shape::paraboloid);

@@ -18,7 +18,8 @@ namespace Nodus
   /// - gaps: delta n . [[x]] - sum_q c_q n . x_,alpha delta xi^alpha (zero where n is the normal of the surface
   ///   itself), and the change of the offsets of smoothed surfaces.
   ///
-  /// On a rigid master no force slides, and the curvature of the surface gives the variation of normals and points.
+  /// On a rigid surface in closed form the curvature gives the variation of normals and points; where it moves as
+  /// prescribed no force slides.
   ///
   /// Left out: the variation of areas and of the weights c_q (nodal forces do not depend on the areas, see
   /// pair_surfaces), of slips and of normals averaged on the slave side, and the spin of the tangents about n.
@@ -50,9 +51,9 @@ namespace Nodus
       Vector3            tangent[2];
       std::vector<std::pair<unsigned int, double>> sites; ///< and c_q
     };
-    ProjectedPoint              slave_point(unsigned int site) const;
-    void                        project(unsigned int pair, const Projection &master, ProjectedPoint &point) const;
-    void                        project_on_rigid(const RigidPoint &master, ProjectedPoint &point) const;
+    ProjectedPoint slave_point(unsigned int site) const;
+    void           project(unsigned int pair, const Projection &master, ProjectedPoint &point) const;
+    void           project_on_rigid(const RigidSurface &master, const Point &p, ProjectedPoint &point) const;
     std::vector<NodeDerivative> normal_derivative(unsigned int site) const;
 
     /// Couplings of a few nodes, dense: blocks (row node, column node) of the force terms, gap rows (slave, column

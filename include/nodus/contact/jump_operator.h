@@ -27,8 +27,8 @@ namespace Nodus
                const Pairing                            &pairing,
                const AveragedJump                       &averaged);
 
-    /// Entries of the row: slave nodes (weights of sum 1) from begin to middle, master nodes (of sum -1, none
-    /// of a rigid master) to end.
+    /// Entries of the row: slave nodes (weights of sum 1) from begin to middle, master nodes or those that carry a
+    /// rigid master (of sum -1, none where that moves as prescribed) to end.
     const Entry *begin(const unsigned int site) const
     {
       return entries_.data() + start_[site];

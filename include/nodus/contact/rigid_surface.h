@@ -1,10 +1,12 @@
 #ifndef nodus_contact_rigid_surface_h
 #define nodus_contact_rigid_surface_h
 
+#include <nodus/contact/rigid_carrier.h>
 #include <nodus/mesh/prescribed_motion.h>
 #include <nodus/parameters.h>
 
 #include <array>
+#include <optional>
 #include <string>
 
 namespace Nodus
@@ -24,38 +26,54 @@ namespace Nodus
     dealii::Tensor<2, dim> slide() const;
   };
 
-  /// The part of a rigid master in a jump: where it is, and how far its material has come in the increment [length].
+  /// The part of a rigid master that moves as prescribed in a jump: where it is, and how far its material has come in
+  /// the increment [length].
   struct RigidPart
   {
     Vector3 x, moved;
   };
 
-  /// The surface of a rigid body in closed form that moves as prescribed.
+  /// The surface of a rigid body in closed form. It moves as prescribed, or a body of the model carries it.
   class RigidSurface
   {
   public:
     /// @p label: for messages. @throws InputError
     RigidSurface(const MasterSurfaceParameters &parameters, const std::string &label);
 
-    /// The increment at hand; the surface is where it is at its end. @throws InputError on every rank
+    /// The increment at hand; the surface is where it is at its end, unless it is carried. @throws InputError on every
+    /// rank
     void set_increment(double begin, double end);
+
+    /// Lets a body carry it.
+    void set_carrier(const RigidCarrier &carrier)
+    {
+      carrier_ = carrier;
+    }
+    const RigidCarrier *carrier() const
+    {
+      return carrier_ ? &*carrier_ : nullptr;
+    }
+    /// Moves it with the nodes of what carries it, which are in the array @p x; nothing without that.
+    void follow_carrier(const std::vector<Point> &x);
 
     RigidPoint closest(const Point &p) const;
 
-    /// Displacement in the increment of the material point of the rigid body that is at @p x now.
-    Vector3 moved(const Point &x) const
+    /// Part in a jump of its point @p x; zero of a carried surface, whose nodes have it.
+    RigidPart part(const Point &x) const
     {
-      return x - before_.to(now_.from(x));
+      return carrier_ ? RigidPart() : RigidPart{x, x - before_.to(now_.from(x))};
     }
 
   private:
     RigidPoint closest_on_paraboloid(const Point &p) const;
+    void       place(const Placement &placement);
 
-    MasterSurfaceParameters parameters_;
-    PrescribedMotion        motion_;
-    Placement               before_, now_;
-    Point                   point_; ///< now
-    Vector3                 axis_;  ///< unit, now; zero for a sphere
+    MasterSurfaceParameters     parameters_;
+    PrescribedMotion            motion_;
+    std::optional<RigidCarrier> carrier_;
+    Placement                   before_, now_;
+    Point                       point_; ///< now
+    Vector3                     axis_;  ///< unit, now; zero for a sphere
   };
 } // namespace Nodus
 

@@ -230,6 +230,8 @@ namespace Nodus
     }
     /// Moves them to where they are at the end of an increment. @throws InputError on every rank
     void move_rigid_masters(double begin, double end);
+    /// The same for those that a body of the model carries, to where the nodes are: @p positions of all nodes.
+    void place_carried_masters(const std::vector<Point> &positions);
 
     /// Fetches the master faces near this rank's slave faces at displacement @p u, unless no surface node has moved
     /// much since the last time; returns whether nodes() and master_faces() have changed. Collective.
@@ -291,6 +293,7 @@ namespace Nodus
     std::string repeated_face() const;
     void        measure_faces();
     void        take_slave_faces();
+    void        take_carriers(const Bodies &bodies, const dealii::DoFHandler<dim> &dof_handler);
     void        make_points();
     void        number_sites();
     void        make_layout(const dealii::IndexSet &owned_dofs);

@@ -19,7 +19,8 @@ namespace Nodus
   /// All bodies as disconnected parts of one distributed triangulation.
   ///
   /// A cell's material id is the (zero-based) index of its body; boundary ids are those of the mesh
-  /// file or of the generator, so that (body, boundary id) names a piece of boundary.
+  /// file or of the generator, so that (body, boundary id) names a piece of boundary. A rigid body without a mesh is
+  /// one cell around the others, whose faces have no id.
   class Bodies
   {
   public:
@@ -27,6 +28,9 @@ namespace Nodus
     /// @throws InputError: missing file or one of third order, no hexahedra, inverted cells, unknown volume id or
     /// generator.
     Bodies(const std::vector<BodyParameters> &parameters, MPI_Comm communicator);
+
+    /// Boundary id of faces that are no part of any boundary.
+    static constexpr dealii::types::boundary_id no_boundary = dealii::numbers::internal_face_boundary_id - 1;
 
     using Triangulation = dealii::parallel::distributed::Triangulation<dim>;
 
@@ -56,6 +60,10 @@ namespace Nodus
     {
       return names_[index];
     }
+    bool has_mesh(const unsigned int index) const
+    {
+      return has_mesh_[index];
+    }
     /// Boundary ids present on body @p index, the same set on every rank.
     const std::set<dealii::types::boundary_id> &boundary_ids(const unsigned int index) const
     {
@@ -74,6 +82,7 @@ namespace Nodus
     Triangulation                                            triangulation_;
     std::shared_ptr<CurvedGeometry>                          curved_;
     std::vector<std::string>                                 names_;
+    std::vector<bool>                                        has_mesh_;
     std::vector<std::set<dealii::types::boundary_id>>        boundary_ids_;
     std::vector<dealii::BoundingBox<dim>>                    boxes_;
 
