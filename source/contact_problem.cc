@@ -237,6 +237,11 @@ namespace Nodus
       if (detailed_profile)
         profile.watch_memory();
       summary();
+      if (restart && !checkpoints.find())
+      {
+        console.line("There is no checkpoint in " + parameters.output.results_folder + ": the run begins at t = 0");
+        restart = false;
+      }
       if (!restart)
         refine_near_contact();
       begin_on_mesh();

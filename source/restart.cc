@@ -194,11 +194,7 @@ namespace Nodus
   {
     const auto timer = profile.time(Phase::set_up);
     const auto found = checkpoints.find();
-    if (!found)
-    {
-      console.line("There is no checkpoint in " + parameters.output.results_folder + ": the run begins at t = 0");
-      return;
-    }
+    Assert(found, dealii::ExcInternalError()); // or there is no restart
     if (!found->remark.empty())
       console.line("Passed over: " + found->remark);
     const Common      common = dealii::Utilities::unpack<Common>(found->common);

@@ -113,6 +113,19 @@ namespace
     const Outcome single = alone(q, true);
     check("  from all ranks to one: the same to 1e-6", !root() || difference(single, reference) <= 1e-6);
   }
+
+  /// A folder without a checkpoint: the mesh is refined before the first increment as without restart.
+  void check_nothing_to_continue(Parameters p)
+  {
+    p.adaptivity.initial_cycles = 1;
+    p.adaptivity.maximum_level  = 1;
+    p.load_stepping             = {{0.1}, {1}};
+    const Outcome reference     = run(in_folder(p, "restart_whole_" + std::to_string(n_ranks())), world(), false);
+    const Outcome begun         = run(in_folder(p, "restart_parts_" + std::to_string(n_ranks())), world(), true);
+    check("nothing to continue: begins at t = 0 with the same mesh",
+          begun.times == reference.times && begun.groups[0].second.size() == reference.groups[0].second.size() &&
+              difference(begun, reference) <= (n_ranks() == 1 ? 1e-12 : 1e-6));
+  }
 } // namespace
 
 int main(int argc, char **argv)
@@ -147,4 +160,6 @@ int main(int argc, char **argv)
   compare("elastoplastic", metal);
 
   compare("rigid body driven by force and moment", SlidingBlock::driven(""));
+  compare("plane that a driven body carries", SlidingBlock::under_driven_plane(""));
+  check_nothing_to_continue(p);
 }

@@ -51,6 +51,19 @@ namespace SlidingBlock
     return p;
   }
 
+  /// Instead of the upper block a plane.
+  inline Parameters under_driven_plane(const std::string &results_folder)
+  {
+    Parameters p                            = driven(results_folder);
+    p.bodies[1].generator                   = "";
+    p.bodies[1].generator_arguments         = "";
+    p.contact_pairs[0].master.boundary_ids  = {};
+    p.contact_pairs[0].master_surface.shape = MasterSurfaceParameters::Shape::plane;
+    p.contact_pairs[0].master_surface.point = Point(0., 0., 0.5);
+    p.contact_pairs[0].master_surface.axis  = Vector3({0., 0., -1.});
+    return p;
+  }
+
   struct Outcome
   {
     std::vector<std::pair<double, std::vector<double>>> groups; ///< scale and values of one kind
