@@ -1,13 +1,11 @@
 #include <nodus/contact/pairing.h>
 #include <nodus/contact/status.h>
-#include <nodus/output/complete_file.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace Nodus
 {
@@ -15,8 +13,6 @@ namespace Nodus
   {
     /// A test value this close to its bound, relative, is round-off and changes nothing.
     constexpr double noise = 1e-10;
-    /// Thresholds below this fraction of the largest count as frictionless: their friction rows would be singular.
-    constexpr double relative_threshold_floor = 1e-6;
     /// A merged loop may come back to a visited status vector this often while the iterate still moves.
     constexpr unsigned int tolerated_returns = 3;
     /// Gap in face sizes up to which a node starts closed.
@@ -90,98 +86,6 @@ namespace Nodus
     for (unsigned int k = 0; k < now_.contact.size(); ++k)
       if (!pairing[k].found)
         now_.contact[k] = false;
-  }
-
-  Status::Change Status::threshold_change(const std::vector<double> &site_pressure) const
-  {
-    const MPI_Comm            communicator = surfaces_.layout().communicator;
-    const std::vector<double> thresholds   = thresholds_at(site_pressure);
-    std::vector<double>       largest(pairs_.size(), 0.);
-    for (unsigned int k = 0; k < thresholds.size(); ++k)
-      if (surfaces_.is_owned(k))
-      {
-        double &l = largest[surfaces_.pair(k)];
-        l         = std::max(l, -thresholds[k]);
-      }
-    dealii::Utilities::MPI::max(largest, communicator, largest);
-    Change change;
-    for (unsigned int k = 0; k < thresholds.size(); ++k)
-      if (surfaces_.is_owned(k))
-      {
-        const double l = largest[surfaces_.pair(k)];
-        const double d = std::abs(thresholds[k] - now_.threshold[k]) / (l > 0. ? l : 1.);
-        if (d > change.value)
-          change = {d, k};
-      }
-    const auto worst = dealii::Utilities::MPI::min_max_avg(change.value, communicator);
-    if (worst.max_index != dealii::Utilities::MPI::this_mpi_process(communicator))
-      change.site = dealii::numbers::invalid_unsigned_int;
-    change.value = worst.max;
-    return change;
-  }
-
-  void Status::freeze_threshold(const std::vector<double> &site_pressure)
-  {
-    note_friction();
-    now_.threshold = thresholds_at(site_pressure);
-    for (unsigned int k = 0; k < site_pressure.size(); ++k)
-      threshold_slope_[k] = limits_[surfaces_.pair(k)].slope(site_pressure[k], factor(k));
-    update_floor();
-  }
-
-  std::vector<double> Status::thresholds_at(const std::vector<double> &site_pressure) const
-  {
-    std::vector<double> thresholds;
-    for (unsigned int k = 0; k < site_pressure.size(); ++k)
-      thresholds.push_back(limits_[surfaces_.pair(k)].threshold(site_pressure[k], factor(k)));
-    return thresholds;
-  }
-
-  void Status::freeze(std::vector<double> thresholds)
-  {
-    note_friction();
-    for (double &threshold : thresholds)
-      threshold = std::min(threshold, 0.);
-    surfaces_.site_exchange().update(thresholds);
-    now_.threshold = std::move(thresholds);
-    update_floor();
-  }
-
-  void Status::set_slip_rates(const std::vector<double> &rate)
-  {
-    std::ostringstream problem;
-    for (unsigned int k = 0; k < rate.size() && problem.str().empty(); ++k)
-      if (surfaces_.is_owned(k))
-      {
-        const Point X       = surfaces_.site_position(k);
-        friction_factor_[k] = limits_[surfaces_.pair(k)].factor(X, rate[k]);
-        if (!(friction_factor_[k] >= 0. && std::isfinite(friction_factor_[k])))
-          problem << "'Friction factor = " << pairs_[surfaces_.pair(k)].friction_factor << "' of "
-                  << pair_label(pairs_, surfaces_.pair(k)) << " is " << friction_factor_[k] << " at (" << X
-                  << ") for the slip rate " << rate[k] << "; it must be >= 0 everywhere";
-      }
-    throw_on_every_rank(problem.str(), surfaces_.layout().communicator);
-    surfaces_.site_exchange().update(friction_factor_);
-  }
-
-  void Status::update_floor()
-  {
-    threshold_floor_.assign(pairs_.size(), 0.);
-    for (unsigned int k = 0; k < now_.threshold.size(); ++k)
-    {
-      double &floor = threshold_floor_[surfaces_.pair(k)];
-      floor         = std::max(floor, -relative_threshold_floor * now_.threshold[k]);
-    }
-    dealii::Utilities::MPI::max(threshold_floor_, surfaces_.layout().communicator, threshold_floor_);
-  }
-
-  void Status::set_friction_fraction(const double fraction)
-  {
-    if (friction_fraction_ == 0. && fraction > 0.)
-      for (unsigned int k = 0; k < now_.stick.size(); ++k)
-        if (pairs_[surfaces_.pair(k)].contact_law != ContactLaw::tied)
-          now_.stick[k] = false;
-    friction_fraction_ = fraction;
   }
 
   bool Status::can_project(const unsigned int pair) const
