@@ -154,7 +154,7 @@ class Results:
         return self._tables[file]
 
     def table(self, file, key, row, column, t=None):
-        """A number of contact.csv or reactions.csv."""
+        """A number of contact.csv, reactions.csv or rigid_bodies.csv."""
         rows = [values for values in self.rows(file) if values[key] == row]
         if not rows:
             names = sorted({values[key] for values in self._tables[file]})
@@ -174,6 +174,7 @@ class Results:
         """What the formulas of `# Check:` lines may call."""
         return {
             "reaction": lambda name, column, t=None: self.table("reactions.csv", "condition", name, column, t),
+            "rigid": lambda name, column, t=None: self.table("rigid_bodies.csv", "body", name, column, t),
             "contact": lambda pair, column, t=None: self.table("contact.csv", "pair", pair, column, t),
             "surface": lambda field, t=None, **position: self.at_node("contact", field, t, **position),
             "body": lambda field, t=None, **position: self.at_node("bodies", field, t, **position),
