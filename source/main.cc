@@ -29,7 +29,8 @@ namespace
   --validate                 reads the case, pairs the surfaces, prints what a run would start from and stops
   --restart                  continues from the last complete checkpoint in the results folder, on any number of processes
   --profile                  prints CPU time, calls and memory by phase, and writes them to profile.json in the results folder
-  --explain KEY              prints what all keys mean whose path contains KEY, e.g. --explain "friction"
+  --explain WORDS            prints what the keys mean that have WORDS in their path, their choices or else their meaning,
+                             e.g. --explain "friction" or --explain traction
   --document                 prints the reference of all parameters (Markdown)
   --version                  prints the versions of nodus and of its libraries
   --help                     prints this text

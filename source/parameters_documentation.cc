@@ -3,6 +3,7 @@
 #include <nodus/suggestion.h>
 
 #include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/utilities.h>
 
 #include <algorithm>
 #include <cctype>
@@ -32,6 +33,37 @@ namespace Nodus
       const std::string escaped = std::regex_replace(text, std::regex("[|<>*]"), "\\$&");
       return escaped.empty() ? " " : ' ' + escaped + ' ';
     }
+    bool has(const std::string &text, const std::string &wanted)
+    {
+      return lower_case(text).find(wanted) != std::string::npos;
+    }
+
+    bool has_words(const std::string &text, const std::string &wanted)
+    {
+      const auto words = dealii::Utilities::split_string_list(wanted, ' ');
+      return std::all_of(words.begin(), words.end(), [&](const std::string &word) { return has(text, word); });
+    }
+
+    /// "direct, block" of "one of: direct, block"; empty where there is no choice.
+    std::string choices(const DeclaredKey &key)
+    {
+      const std::string before = "one of: ";
+      const auto        begin  = key.allowed.find(before);
+      return begin == std::string::npos ? "" : key.allowed.substr(begin + before.size());
+    }
+
+    /// All that is to be said about the keys that are @p meant.
+    template <typename Predicate>
+    std::string entries(const std::vector<DeclaredKey> &keys, const Predicate &meant)
+    {
+      std::string text;
+      for (const auto &k : keys)
+        if (meant(k))
+          text += (text.empty() ? "" : "\n") + std::regex_replace(k.path(), numbered, " <n>") + "\n  default  " +
+                  (k.default_value.empty() ? "(empty)" : k.default_value) + "\n  allowed  " + k.allowed +
+                  "\n  unit     " + k.unit() + "\n  meaning  " + k.documentation + '\n';
+      return text;
+    }
   } // namespace
 
   std::vector<DeclaredKey> Parameters::reference_keys()
@@ -48,23 +80,38 @@ namespace Nodus
   std::string Parameters::explain(const std::string &key)
   {
     // any number of a body, condition or pair, and blanks around '/' as in the titles of the reference
-    std::string wanted = std::regex_replace(lower_case(key), std::regex("\\s*/\\s*"), "/");
+    std::string wanted = std::regex_replace(lower_case(dealii::Utilities::trim(key)), std::regex("\\s*/\\s*"), "/");
     wanted             = std::regex_replace(wanted, std::regex("(body|condition|pair) ([0-9]+|<n>)(?=/|$)"), "$1 1");
 
     const std::vector<DeclaredKey> keys = reference_keys();
     std::string                    text;
-    for (const auto &k : keys)
-      if (lower_case(k.path()).find(wanted) != std::string::npos)
-        text += (text.empty() ? "" : "\n") + std::regex_replace(k.path(), numbered, " <n>") + "\n  default  " +
-                (k.default_value.empty() ? "(empty)" : k.default_value) + "\n  allowed  " + k.allowed +
-                "\n  unit     " + k.unit() + "\n  meaning  " + k.documentation + '\n';
-    if (text.empty() || wanted.empty())
+    // What is meant is a part of a path or of a choice, or else words of a path in any order, or else of a meaning.
+    if (!wanted.empty())
+    {
+      text = entries(keys, [&](const DeclaredKey &k) { return has(k.path(), wanted) || has(choices(k), wanted); });
+      if (text.empty())
+        text = entries(keys, [&](const DeclaredKey &k) { return has_words(k.path(), wanted); });
+      if (text.empty())
+        text = entries(keys, [&](const DeclaredKey &k) { return has_words(k.documentation, wanted); });
+    }
+    if (text.empty())
     {
       std::vector<std::string> names;
       for (const auto &k : keys)
-        if (std::find(names.begin(), names.end(), k.key) == names.end())
-          names.push_back(k.key);
-      const auto near = nearest(key.substr(key.rfind('/') + 1), names);
+      {
+        std::vector<std::string> list = dealii::Utilities::split_string_list(choices(k), ',');
+        list.insert(list.begin(), k.key);
+        for (const std::string &name : list)
+          if (std::find(names.begin(), names.end(), name) == names.end())
+            names.push_back(name);
+      }
+      std::vector<std::string> near;
+      if (!wanted.empty())
+        near = nearest(key.substr(key.rfind('/') + 1), names);
+      // several words, some of which may be right
+      for (const std::string &word : dealii::Utilities::split_string_list(wanted, ' '))
+        if (near.empty() && word.size() > 2)
+          near = nearest(word, names);
       throw InputError("--explain: there is no key like '" + key + "'" +
                        (near.empty() ? "; nodus --document lists all keys" : did_you_mean(near)));
     }
@@ -82,7 +129,7 @@ starts a comment and a `\` at the end of a line continues it. Bodies, boundary c
 numbered 1, 2, 3, ... without gaps. Unknown keys, keys set twice and values out of range are refused. On the command
 line `--set "Section/Key=value"` replaces a value of the file, for example
 `--set "Body 1/Material/Poisson's ratio=0.4"`, and `nodus --explain "friction"` prints what is said here about all keys
-with that word.
+with that word in their path or among their choices, or else in their meaning.
 
 A file that ends in .json says the same as nested objects, with arrays for lists if you like:
 `{"Title": "...", "Body 1": {"Name": "block", "Material": {"Young's modulus": 2000}}, "Load stepping": {"Increments":
