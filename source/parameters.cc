@@ -1,3 +1,4 @@
+#include <nodus/mesh/generators.h>
 #include <nodus/parameter_file.h>
 #include <nodus/parameter_keys.h>
 #include <nodus/parameters.h>
@@ -148,7 +149,8 @@ namespace Nodus
       prm.add_parameter("Generator",
                         body.generator,
                         "Function of deal.II's GridGenerator that makes the mesh [-], e.g. "
-                        "subdivided_hyper_rectangle.",
+                        "subdivided_hyper_rectangle; the table of generators at the end of this reference has them "
+                        "all, --explain finds them by name.",
                         Patterns::Anything());
       prm.add_parameter(
           "Generator arguments",
@@ -543,6 +545,16 @@ namespace Nodus
       parameters.output.results_folder = (std::filesystem::path("results") / path.stem()).string();
 
     parameters.check(text);
+    for (unsigned int b = 0; b < parameters.bodies.size(); ++b)
+      if (const BodyParameters &body = parameters.bodies[b]; !body.generator.empty())
+      {
+        const std::string section = "Body " + std::to_string(b + 1);
+        if (const std::string mistake = Generators::mistake_in_name(body.generator); !mistake.empty())
+          text.refuse(section, "Generator", mistake);
+        if (const std::string mistake = Generators::mistake_in_arguments(body.generator, body.generator_arguments);
+            !mistake.empty())
+          text.refuse(section, "Generator arguments", mistake);
+      }
     return parameters;
   }
 } // namespace Nodus

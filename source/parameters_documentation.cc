@@ -1,3 +1,4 @@
+#include <nodus/mesh/generators.h>
 #include <nodus/parameter_file.h>
 #include <nodus/parameters.h>
 #include <nodus/suggestion.h>
@@ -64,6 +65,18 @@ namespace Nodus
                   "\n  unit     " + k.unit() + "\n  meaning  " + k.documentation + '\n';
       return text;
     }
+
+    /// The mesh generators that have @p wanted in their names.
+    std::string generators(const std::string &wanted)
+    {
+      std::string text;
+      for (const std::string &name : Generators::names())
+        if (has(name, wanted))
+          text += "\nGenerator " + name + "\n  arguments  " +
+                  std::regex_replace(Generators::arguments(name), std::regex(" : "), "\n           : ") +
+                  "\n  example    " + Generators::example(name) + '\n';
+      return text;
+    }
   } // namespace
 
   std::vector<DeclaredKey> Parameters::reference_keys()
@@ -89,6 +102,8 @@ namespace Nodus
     if (!wanted.empty())
     {
       text = entries(keys, [&](const DeclaredKey &k) { return has(k.path(), wanted) || has(choices(k), wanted); });
+      if (const std::string more = generators(wanted); !more.empty())
+        text += text.empty() ? more.substr(1) : more;
       if (text.empty())
         text = entries(keys, [&](const DeclaredKey &k) { return has_words(k.path(), wanted); });
       if (text.empty())
@@ -96,7 +111,7 @@ namespace Nodus
     }
     if (text.empty())
     {
-      std::vector<std::string> names;
+      std::vector<std::string> names = Generators::names();
       for (const auto &k : keys)
       {
         std::vector<std::string> list = dealii::Utilities::split_string_list(choices(k), ',');
@@ -149,6 +164,10 @@ a value depends on time, `pi` and the functions of muParser and deal.II's Functi
       text += '|' + cell(key.key) + '|' + cell(key.default_value) + '|' + cell(key.allowed) + '|' +
               cell(key.documentation) + "|\n";
     }
+    text += "\n## Generators\n\nAll arguments are to be given, separated by ':'.\n\n"
+            "| Generator | Arguments | Example |\n|---|---|---|\n";
+    for (const std::string &name : Generators::names())
+      text += '|' + cell(name) + '|' + cell(Generators::arguments(name)) + "| `" + Generators::example(name) + "` |\n";
     return text;
   }
 } // namespace Nodus

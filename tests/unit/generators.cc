@@ -1,0 +1,62 @@
+// The table of mesh generators against deal.II's functions: every example makes hexahedra, with as many arguments as
+// deal.II wants, and is found right; one argument less, and each argument in words, is found wrong.
+
+#include <nodus/mesh/generators.h>
+
+#include "../cases.h"
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/tria.h>
+
+using namespace Nodus;
+using namespace Cases;
+
+namespace
+{
+  /// Coarse cells of the mesh; 0 when deal.II refuses.
+  unsigned int cells_of(const std::string &name, const std::string &arguments)
+  {
+    dealii::Triangulation<3> mesh;
+    try
+    {
+      dealii::GridGenerator::generate_from_name_and_arguments(mesh, name, arguments);
+    }
+    catch (const std::exception &)
+    {
+      return 0;
+    }
+    return mesh.all_reference_cells_are_hyper_cube() && mesh.n_levels() == 1 ? mesh.n_active_cells() : 0;
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  for (const std::string &name : Generators::names())
+  {
+    const std::string example = Generators::example(name);
+    check(name + ": the example is right",
+          cells_of(name, example) > 0 && Generators::mistake_in_name(name).empty() &&
+              Generators::mistake_in_arguments(name, example).empty());
+
+    const auto   right      = dealii::Utilities::split_string_list(example, ':');
+    unsigned int n_detected = 0;
+    for (unsigned int wrong = 0; wrong < right.size(); ++wrong)
+    {
+      std::string text;
+      for (unsigned int i = 0; i < right.size(); ++i)
+        text += (i == 0 ? "" : " : ") + (i == wrong ? "much" : right[i]);
+      n_detected += !Generators::mistake_in_arguments(name, text).empty();
+    }
+    check(name + ": each wrong argument is found, and one too many",
+          n_detected == right.size() && !Generators::mistake_in_arguments(name, example + " : 1").empty() &&
+              cells_of(name, example + " : 1") == 0);
+  }
+  check(
+      "cells of different widths",
+      Generators::mistake_in_arguments("subdivided_hyper_rectangle", "0.5,0.5; 1; 1 : 0,0,0 : 1,1,1 : true").empty() &&
+          cells_of("subdivided_hyper_rectangle", "0.5,0.5; 1; 1 : 0,0,0 : 1,1,1 : true") == 2);
+  check("the name of another generator of deal.II is left to it", Generators::mistake_in_name("simplex").empty());
+}
