@@ -67,12 +67,12 @@ namespace Nodus
 
   /// Records why the increment at hand failed, at the state that it failed in. @returns where to read more, for the
   /// message: a disk that does not take it must not hide why the run ends. Collective.
-  std::string ContactProblem::Implementation::diagnose(const SolverFailure &failure)
+  std::string ContactProblem::Implementation::diagnose(const SolverFailure &failure, const bool may_shrink)
   {
     const auto timer = profile.time(Phase::output);
     try
     {
-      FailureEvidence          evidence = evidence_of(failure);
+      FailureEvidence          evidence = evidence_of(failure, may_shrink);
       const std::vector<float> det_F    = find_distorted_cells(evidence);
       if (vtu)
       {
@@ -88,7 +88,7 @@ namespace Nodus
     }
   }
 
-  FailureEvidence ContactProblem::Implementation::evidence_of(const SolverFailure &failure)
+  FailureEvidence ContactProblem::Implementation::evidence_of(const SolverFailure &failure, const bool may_shrink)
   {
     // Contact at the last iterate, whose bulk may be the reason why the rest of its residual was not computed.
     gather_state();
@@ -101,6 +101,7 @@ namespace Nodus
     evidence.converged     = path.time();
     evidence.linear_solver = linear_solver_parameters.type;
     evidence.force_scale   = force_scale;
+    evidence.may_shrink    = may_shrink;
     const OwnedNodes nodes(dof_handler, *mapping);
     find_worst_nodes(nodes, evidence);
     find_changing_sites(evidence);
@@ -108,18 +109,12 @@ namespace Nodus
     if (failure.kind() == SolverFailure::Kind::over_constraint)
       find_repeated_constraint(evidence);
 
-    evidence.free_motions = free_motions(nodes);
+    for (const auto &motion : free_motions(nodes))
+      evidence.free_motions.push_back(motion.text);
+    for (const auto &motion : free_motions(nodes, true))
+      evidence.left_free.push_back(motion.text);
+    propose_springs(evidence);
     return evidence;
-  }
-
-  /// Rigid motions that nothing holds now, by name. Collective.
-  std::vector<std::string> ContactProblem::Implementation::free_motions(const OwnedNodes &nodes) const
-  {
-    RigidMotions motions(bodies, dof_handler, *mapping, *rigid_bodies, nodes, solution.block(0));
-    motions.hold_prescribed(boundary_conditions->homogeneous_constraints());
-    motions.hold_springs(parameters.boundary_conditions, time);
-    motions.hold_contact(*surfaces, pairing, jump, *status, state, residual);
-    return motions.free();
   }
 
   void ContactProblem::Implementation::find_worst_nodes(const OwnedNodes &nodes, FailureEvidence &evidence) const

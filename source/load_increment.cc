@@ -71,7 +71,8 @@ namespace Nodus
     for (auto attempt = attempts.begin();; ++attempt)
       try
       {
-        merged = attempt->merged;
+        merged   = attempt->merged;
+        singular = false;
         diagnosis.begin_attempt(merged.names() + (attempt->approach ? "; friction grows" : ""));
         if (attempt->approach)
           approach_friction();
@@ -83,7 +84,8 @@ namespace Nodus
       {
         approaches = false;
         status->set_friction_fraction(1.);
-        if (attempt + 1 == attempts.end())
+        // without contact all attempts have the same system
+        if (attempt + 1 == attempts.end() || (begins_singular() && n_closed() == 0))
           throw;
         console.remark((merged.any() ? "merged iteration given up: " : "three loops given up: ") +
                        std::string(failure.what()) + "; again with " + attempt[1].name);

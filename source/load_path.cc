@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iomanip>
-#include <limits>
 #include <sstream>
 
 namespace Nodus
@@ -30,11 +29,12 @@ namespace Nodus
         reason << "geometry pass " << pass.geometry << ", threshold pass " << pass.threshold << ", status pass "
                << pass.status << ": " << failure.what();
         diagnosis.end_attempt(failure.what());
-        const bool        again = path.cut_back();
-        const std::string hint  = again ? "" : diagnose(failure);
+        const bool        may_shrink = !begins_singular();
+        const bool        again      = may_shrink && path.cut_back();
+        const std::string hint       = again ? "" : diagnose(failure, may_shrink);
         roll_back();
         if (!again)
-          give_up(reason.str(), hint, path.increment() > first);
+          give_up(reason.str(), hint, path.increment() > first, may_shrink);
         console.remark(reason.str() + "; the increment is halved");
         continue;
       }
@@ -108,36 +108,6 @@ namespace Nodus
     console.remark(text.str());
   }
 
-  /// A body that nothing but stabilisation holds may cross a surface in one increment, which satisfies the equations.
-  void ContactProblem::Implementation::check_stabilised_motion()
-  {
-    if (!stabilisation->acts() || surfaces->n_pairs() == 0)
-      return;
-    double limit = std::numeric_limits<double>::max();
-    for (unsigned int p = 0; p < surfaces->n_pairs(); ++p)
-      limit = std::min(limit, 0.5 * surfaces->face_size(p));
-    std::string  worst;
-    const double moved = largest_difference(solution.block(0), committed.block(0), &worst);
-    if (moved <= limit)
-      return;
-    std::ostringstream message;
-    message << "the node " << worst << " moves by " << moved
-            << " against viscous stabilisation, more than half of a slave face (" << limit
-            << "); raise 'Load stepping/Viscous stabilisation'";
-    throw SolverFailure(message.str(), SolverFailure::Kind::free_body);
-  }
-
-  /// Names the rigid motions that nothing holds as the increment begins: contact has to, or the system is singular.
-  void ContactProblem::Implementation::warn_of_free_motions()
-  {
-    std::string text;
-    for (const std::string &motion : free_motions(OwnedNodes(dof_handler, *mapping)))
-      text += (text.empty() ? "" : "; ") + motion;
-    if (!text.empty())
-      console.remark("nothing holds these motions as the increment begins: " + text +
-                     (stabilisation->acts() ? "; viscous stabilisation does" : "; contact has to close at once"));
-  }
-
   /// Sets the boundary conditions of time @p t. Where a displacement was prescribed until the interval began, the force
   /// that held it goes to zero in the course of the interval.
   void ContactProblem::Implementation::impose(const double t)
@@ -160,9 +130,11 @@ namespace Nodus
   }
 
   /// The state is the last one that converged, in this run if @p converged_before. @p hint: where to read more.
+  /// @p may_shrink: smaller increments might have come further.
   void ContactProblem::Implementation::give_up(const std::string &reason,
                                                const std::string &hint,
-                                               const bool         converged_before)
+                                               const bool         converged_before,
+                                               const bool         may_shrink)
   {
     tables->add_failure();
     if (vtu && converged_before)
@@ -175,7 +147,9 @@ namespace Nodus
     message << "increment " << path.increment() << " (t = " << path.target() << "), " << reason
             << ". The last converged state is t = " << path.time()
             << (path.increment() > 1 ? "" : " (no increment converged)");
-    if (!parameters.load_stepping.cut_back)
+    if (!may_shrink)
+      message << ". Smaller increments begin with the same system, so the increment was not cut back";
+    else if (!parameters.load_stepping.cut_back)
       message << ". Give more Increments, or set 'Load stepping/Cut back = true'";
     else
       message << ". The increment was cut back to " << path.target() - path.time()

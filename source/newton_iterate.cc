@@ -396,10 +396,10 @@ namespace Nodus
     if (!report.null_pivots.empty())
     {
       null_pivot = report.null_pivots.front();
+      singular   = null_pivot < surfaces->layout().n_u;
       throw SolverFailure("the system is singular (" + std::to_string(report.null_pivots.size()) +
                               " null pivots), first at " + unknown_locus(null_pivot),
-                          null_pivot < surfaces->layout().n_u ? SolverFailure::Kind::free_body
-                                                              : SolverFailure::Kind::over_constraint);
+                          singular ? SolverFailure::Kind::free_body : SolverFailure::Kind::over_constraint);
     }
     const long surplus = report.negative_pivots - 3 * static_cast<long>(surfaces->layout().n_slave_nodes);
     if (report.negative_pivots >= 0 && surplus != 0)
@@ -475,8 +475,7 @@ namespace Nodus
     for (const auto &part : dealii::Utilities::MPI::all_gather(communicator, here))
       if (!part.empty())
         here = part;
-    return "the displacement of node " + here +
-           ": its body is free to move; hold it with a boundary condition, or close the contact first ('Initial status "
-           "= closed'), or set 'Load stepping/Viscous stabilisation = 1e-2'";
+    return "the displacement of node " + here + ": its body is free to move; " +
+           ways_to_hold("hold it with a boundary condition (a soft spring will do)");
   }
 } // namespace Nodus

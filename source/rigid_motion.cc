@@ -187,11 +187,12 @@ namespace Nodus
       for (unsigned int j = 0; j < rows.size(); ++j)
         motion[rows[j]] = vt(k, j) * scale(rows[j]);
       if (!may_wait_for_friction(forces > 0. ? std::abs(force) / forces : 0.))
-        throw SolverFailure(
-            "the system is singular: " + describe_rigid_motion(motion) +
-                ", and nothing resists it; take components out of 'Rigid free', close the contact first "
-                "('Initial status = closed'), or set 'Load stepping/Viscous stabilisation = 1e-2'",
-            SolverFailure::Kind::free_body);
+      {
+        singular = true;
+        throw SolverFailure("the system is singular: " + describe_rigid_motion(motion) + ", and nothing resists it; " +
+                                ways_to_hold("take components out of 'Rigid free'"),
+                            SolverFailure::Kind::free_body);
+      }
       waits = true;
     }
     rigid_waits += waits;

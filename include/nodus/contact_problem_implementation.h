@@ -110,35 +110,41 @@ namespace Nodus
     void                     warn_of_free_motions();
     void                     report_stabilisation();
     void                     check_stabilised_motion();
-    std::string              diagnose(const SolverFailure &failure);
-    FailureEvidence          evidence_of(const SolverFailure &failure);
-    std::vector<std::string> free_motions(const OwnedNodes &nodes) const;
-    void                     find_worst_nodes(const OwnedNodes &nodes, FailureEvidence &evidence) const;
-    void                     find_changing_sites(FailureEvidence &evidence) const;
-    void                     find_partners(FailureEvidence &evidence) const;
-    std::vector<float>       find_distorted_cells(FailureEvidence &evidence);
-    void                     find_repeated_constraint(FailureEvidence &evidence) const;
-    void                     write_failed_state(const std::string &name, const std::vector<float> &det_F);
-    [[noreturn]] void        give_up(const std::string &reason, const std::string &hint, bool converged_before);
-    void                     set_up_mesh();
-    void                     begin_on_mesh();
-    RefinementIndicator      estimate_error();
-    bool                     refine(const RefinementIndicator &indicator, bool keep_state);
-    void                     refine_near_contact();
-    bool                     adapt_mesh();
-    void                     restore_equilibrium();
-    std::vector<SiteState>   node_states() const;
-    std::vector<SiteState>   interpolated_sites(const std::vector<Vector> &vectors) const;
-    std::vector<Vector>      nodal_state(bool in_space) const;
-    void                     write_checkpoint();
-    void                     read_checkpoint();
-    void                     match_mesh(const std::vector<std::filesystem::path> &pieces);
-    void                     read_pieces(const std::vector<std::filesystem::path> &pieces);
-    void                     heed_signals();
-    void                     write(unsigned int increment, bool last);
-    void                     update_results();
-    void                     summary();
-    std::string              report_profile(bool converged);
+    std::string              diagnose(const SolverFailure &failure, bool may_shrink);
+    FailureEvidence          evidence_of(const SolverFailure &failure, bool may_shrink);
+    std::vector<RigidMotions::Motion> free_motions(const OwnedNodes &nodes, bool as_closed = false) const;
+    unsigned int                      n_closed() const;
+    bool                              begins_singular() const;
+    std::string                       ways_to_hold(const std::string &first) const;
+    void                              propose_springs(FailureEvidence &evidence) const;
+    void                              find_worst_nodes(const OwnedNodes &nodes, FailureEvidence &evidence) const;
+    void                              find_changing_sites(FailureEvidence &evidence) const;
+    void                              find_partners(FailureEvidence &evidence) const;
+    std::vector<float>                find_distorted_cells(FailureEvidence &evidence);
+    void                              find_repeated_constraint(FailureEvidence &evidence) const;
+    void                              write_failed_state(const std::string &name, const std::vector<float> &det_F);
+    [[noreturn]] void
+         give_up(const std::string &reason, const std::string &hint, bool converged_before, bool may_shrink);
+    void set_up_mesh();
+    void begin_on_mesh();
+    RefinementIndicator    estimate_error();
+    bool                   refine(const RefinementIndicator &indicator, bool keep_state);
+    void                   refine_near_contact();
+    bool                   adapt_mesh();
+    void                   restore_equilibrium();
+    std::vector<SiteState> node_states() const;
+    std::vector<SiteState> interpolated_sites(const std::vector<Vector> &vectors) const;
+    std::vector<Vector>    nodal_state(bool in_space) const;
+    void                   write_checkpoint();
+    void                   read_checkpoint();
+    void                   match_mesh(const std::vector<std::filesystem::path> &pieces);
+    void                   read_pieces(const std::vector<std::filesystem::path> &pieces);
+    void                   heed_signals();
+    void                   write(unsigned int increment, bool last);
+    void                   write_initial_state();
+    void                   update_results();
+    void                   summary();
+    std::string            report_profile(bool converged);
     void set_nodal_state(const std::vector<Vector> &vectors, bool in_space, std::vector<SiteState> sites);
 
     std::vector<double> pair_stiffness() const;
@@ -203,6 +209,7 @@ namespace Nodus
     Vector          out_of_balance;   ///< nodal forces of the last iterate that has any, zero where prescribed
     double          force_scale = 0.; ///< that they are relative to in the norms
     DoFIndex        null_pivot  = dealii::numbers::invalid_dof_index; ///< flat index, of a singular system
+    bool            singular    = false;                              ///< a system of this attempt leaves bodies free
     Vector          u_geometry, u_before_geometry; ///< displacements of this and the previous pairing
     std::string     first_changed, cycling;        ///< sites of the last change of statuses, and of the last cycle
     unsigned int    mesh_repetitions = 0;          ///< of the increment at hand on a finer mesh

@@ -157,7 +157,8 @@ namespace Nodus
                                   const JumpOperator    &jump,
                                   const Status          &status,
                                   const ContactState    &state,
-                                  const ContactResidual &residual)
+                                  const ContactResidual &residual,
+                                  const bool             as_closed)
   {
     const dealii::IndexSet &owned = dof_handler_.locally_owned_dofs();
     Vector                  body(owned, surfaces.layout().communicator);
@@ -169,7 +170,7 @@ namespace Nodus
 
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
     {
-      if (!surfaces.is_owned(s) || !surfaces.has_status(s) || !status.contact(s) || !pairing[s].found)
+      if (!surfaces.is_owned(s) || !surfaces.has_status(s) || !pairing[s].found || !(as_closed || status.contact(s)))
         continue;
       const auto hold_towards = [&](const Vector3 &direction)
       {
@@ -178,7 +179,7 @@ namespace Nodus
         hold();
       };
       hold_towards(pairing[s].normal);
-      if (!status.friction(s) || (status.holds_friction(s) && !status.stick(s)))
+      if (!status.contact(s) || !status.friction(s) || (status.holds_friction(s) && !status.stick(s)))
         continue;
       Vector3 friction;
       if (!status.stick(s))
@@ -189,17 +190,21 @@ namespace Nodus
     }
   }
 
-  std::string RigidMotions::describe(const Eigen::VectorXd &motion) const
+  RigidMotions::Motion RigidMotions::describe(const Eigen::VectorXd &motion) const
   {
-    std::string text;
+    Motion result;
     for (unsigned int b = 0; b < bodies_.size(); ++b)
     {
       Vector3 part[2]; // translation and rotation
       for (unsigned int i = 0; i < 2 * dim; ++i)
         if (const double value = motion[2 * dim * b + i]; std::abs(value) > noise)
           part[i / dim][i % dim] = value;
+      result.moves.emplace_back();
+      for (unsigned int c = 0; c < dim; ++c)
+        result.moves[b][c] = part[0][c] != 0. || part[1][(c + 1) % dim] != 0. || part[1][(c + 2) % dim] != 0.;
       if (part[0].norm() + part[1].norm() == 0.)
         continue;
+      std::string &text = result.text;
       text += (text.empty() ? "" : ", together with ") + std::string("body ") + std::to_string(b + 1) + " (" +
               bodies_.name(b) + ")";
       if (part[0].norm() > 0.)
@@ -208,10 +213,10 @@ namespace Nodus
         text += std::string(part[0].norm() > 0. ? " and" : "") + " turns about " + text_of(part[1] / part[1].norm()) +
                 " through " + text_of(centre_[b]);
     }
-    return text;
+    return result;
   }
 
-  std::vector<std::string> RigidMotions::free()
+  std::vector<RigidMotions::Motion> RigidMotions::free()
   {
     std::vector<double> sum(held_.data(), held_.data() + held_.size());
     dealii::Utilities::MPI::sum(sum, dof_handler_.get_communicator(), sum);
@@ -238,10 +243,9 @@ namespace Nodus
           motions.row(i) -= motions(i, column) * motions.row(done);
       ++done;
     }
-    std::vector<std::string> texts;
+    std::vector<Motion> descriptions;
     for (int i = 0; i < done; ++i)
-      texts.push_back(describe(motions.row(i)));
-    return texts;
+      descriptions.push_back(describe(motions.row(i)));
+    return descriptions;
   }
-
 } // namespace Nodus

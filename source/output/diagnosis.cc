@@ -100,6 +100,30 @@ namespace Nodus
                   i.iteration);
     }
 
+    /// The same to be pasted: options of the command line, and what is to be appended to the case.
+    void write_changes(std::ostream &out, const std::vector<SuspectedCause::Change> &changes)
+    {
+      std::string options, blocks;
+      for (const auto &change : changes)
+      {
+        const auto slash = change.key.rfind('/');
+        blocks += change.block;
+        if (!change.block.empty() || slash == std::string::npos)
+          continue;
+        options += "--set \"" + change.key + '=' + change.proposed + '"';
+        for (const auto &[key, value] : change.together)
+          options += " --set \"" + change.key.substr(0, slash + 1) + key + '=' + value + '"';
+        options += '\n';
+      }
+      if (!blocks.empty())
+        out << "\nTo append to the case:\n\n```\n" << blocks << "```\n";
+      if (!options.empty())
+        out << "\nOptions for the command line, one line at a time; what is before `/` is the subsection and what is "
+               "behind it the `set` line of the case:\n\n```\n"
+            << options << "```\n";
+      out << '\n';
+    }
+
     void write_causes(std::ostream &out, const std::vector<SuspectedCause> &causes)
     {
       out << "## Suspected cause\n\n";
@@ -109,21 +133,23 @@ namespace Nodus
         for (const std::string &evidence : causes[n].evidence)
           out << "   - " << evidence << '\n';
       }
-      out << "\n## What to change\n\nThe most promising first, one at a time; keys as `--set` takes them.\n\n"
-          << header({"key", "now", "try", "why"});
-      std::vector<std::string> told;
+      std::vector<SuspectedCause::Change> told;
       for (const SuspectedCause &cause : causes)
       {
         unsigned int n = 0;
         for (const auto &change : cause.changes)
-          if (n < n_changes && std::find(told.begin(), told.end(), change.key) == told.end())
+          if (n < n_changes &&
+              std::none_of(told.begin(), told.end(), [&](const auto &other) { return other.key == change.key; }))
           {
-            out << row({'`' + change.key + '`', change.now, change.proposed, change.reason});
-            told.push_back(change.key);
+            told.push_back(change);
             ++n;
           }
       }
-      out << '\n';
+      out << "\n## What to change\n\nThe most promising first, one at a time.\n\n"
+          << header({"key", "now", "try", "why"});
+      for (const auto &change : told)
+        out << row({'`' + change.key + '`', change.now, change.proposed, change.reason});
+      write_changes(out, told);
     }
 
     void write_loops(std::ostream &out, const Diagnosis::History &history)
@@ -308,7 +334,9 @@ namespace Nodus
     out << "# Why the run stopped\n\n"
         << (parameters_.title.empty() ? "" : parameters_.title + ". ") << "Increment " << history_.increment
         << ", from t = " << history_.begin << " to t = " << history_.end
-        << (parameters_.load_stepping.cut_back ? ", cut back as far as it may be: " : ", not to be cut back: ")
+        << (!evidence.may_shrink ? ", not cut back, since smaller increments begin with the same system: "
+            : parameters_.load_stepping.cut_back ? ", cut back as far as it may be: "
+                                                 : ", not to be cut back: ")
         << evidence.message << ".\n\nThe last converged state is t = " << evidence.converged << '.'
         << (evidence.state.empty()
                 ? ""

@@ -8,11 +8,11 @@ using namespace Cases;
 
 namespace
 {
-  std::string outcome(const Parameters &p)
+  std::string outcome(const Parameters &p, std::ostream &lines = log())
   {
     try
     {
-      ContactProblem problem(p, world(), log());
+      ContactProblem problem(p, world(), lines);
       problem.run();
       return "no failure";
     }
@@ -20,6 +20,11 @@ namespace
     {
       return failure.what();
     }
+  }
+
+  bool says(const std::string &text, const std::string &words)
+  {
+    return text.find(words) != std::string::npos;
   }
 
   void check_words(const std::string &what, const std::string &message, const std::vector<std::string> &words)
@@ -44,9 +49,56 @@ int main(int argc, char **argv)
                              drive("top", region(2, {z_plus}), 2, "-0.1*t")};
   p.contact_pairs         = {pair(region(2, {z_minus}), region(1, {z_plus}))};
   p.output.results_folder = "failures_results";
+  p.load_stepping         = {{1.}, {4}};
+  std::ostringstream sliding_lines;
+  const std::string  sliding = outcome(p, sliding_lines);
   check_words("a body that can slide away is named",
-              outcome(p),
-              {"singular", "free to move", "increment 1", "no increment converged", "diagnosis.md"});
+              sliding,
+              {"singular",
+               "free to move",
+               "increment 1 (t = 0.25)",
+               "no increment converged",
+               "diagnosis.md",
+               "contact is closed, but has no friction",
+               "Smaller increments begin with the same system"});
+  check("  and no smaller increments are tried nor advised",
+        !says(sliding_lines.str(), "halved") && !says(sliding, "Minimum increment") &&
+            !says(sliding, "Initial status"));
+
+  auto rubbing                                  = p;
+  rubbing.contact_pairs[0].friction_coefficient = 0.5;
+  check_words("a closed contact that has no pressure to rub with",
+              outcome(rubbing),
+              {"friction holds nothing before there is pressure", "Viscous stabilisation"});
+
+  auto above                   = p; // held but for the motion that contact is to stop
+  above.bodies[1]              = box("upper", "2,2,1", {0.1, 0.1, 1.05}, {0.9, 0.9, 2.05}, 100, 0.3);
+  above.boundary_conditions[1] = hold("sides", region(2, {z_plus}), {0, 1});
+  above.boundary_conditions.push_back(press("top", region(2, {z_plus}), "t"));
+  std::ostringstream above_lines;
+  const std::string  falling = outcome(above, above_lines);
+  check_words("a block above the other one may start closed",
+              falling,
+              {"close the contact first ('Initial status = closed')", "Smaller increments begin"});
+  check("  and has one attempt", !says(above_lines.str(), "again with") && !says(falling, "would still leave"));
+  above.contact_pairs[0].initial_status = ContactPairParameters::InitialStatus::closed;
+  check("  and then does not fail", outcome(above) == "no failure");
+  above.contact_pairs[0].initial_status = ContactPairParameters::InitialStatus::by_gap;
+  above.boundary_conditions.erase(above.boundary_conditions.begin() + 1);
+  check_words("a block that closed contact would not hold either",
+              outcome(above),
+              {"'Initial status = closed' alone would still leave 3 of 6 motions free"});
+
+  auto pulled                = p; // contact opens in the course of the third increment
+  pulled.boundary_conditions = {hold("bottom", region(1, {z_minus}), {0, 1, 2}),
+                                hold("sides", region(2, {z_plus}), {0, 1}),
+                                press("top", region(2, {z_plus}), "min(t,1)-1.7*max(t-1,0)")};
+  pulled.load_stepping       = {{1., 2.}, {2, 1}};
+  std::ostringstream pulled_lines;
+  const std::string  lifted = outcome(pulled, pulled_lines);
+  check("a contact that opens on the way: smaller increments are tried, up to where it opens",
+        says(pulled_lines.str(), "halved") && says(lifted, "free to move") && says(lifted, "cut back to") &&
+            says(lifted, "The last converged state is t = 1.5"));
 
   p.boundary_conditions = {hold("bottom", region(1, {z_minus}), {0, 1, 2}),
                            condition("top",

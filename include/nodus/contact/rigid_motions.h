@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -43,23 +44,29 @@ namespace Nodus
     /// By those of the conditions that act at @p time.
     void hold_springs(const std::vector<BoundaryConditionParameters> &conditions, double time);
     /// By closed sites. Those that slip hold their normal direction and the tangential one across the friction force.
-    /// Collective.
+    /// @p as_closed: open sites with a master point hold their normal direction, too. Collective.
     void hold_contact(const ContactSurfaces &surfaces,
                       const Pairing         &pairing,
                       const JumpOperator    &jump,
                       const Status          &status,
                       const ContactState    &state,
-                      const ContactResidual &residual);
+                      const ContactResidual &residual,
+                      bool                   as_closed = false);
 
-    /// One text for each motion, e.g. "body 2 (ball) moves along (1 0 0)". Collective.
-    std::vector<std::string> free();
+    struct Motion
+    {
+      std::string                        text;  ///< e.g. "body 2 (ball) moves along (1 0 0)"
+      std::vector<std::array<bool, dim>> moves; ///< by body: components that some point of it moves in
+    };
+    /// Collective.
+    std::vector<Motion> free();
 
   private:
     /// Adds @p direction, times a weight, at @p x of a body to the motion that is held next.
-    void        take(unsigned int body, const Point &x, const Vector3 &direction);
-    void        hold();
-    void        hold(DoFIndex dof);
-    std::string describe(const Eigen::VectorXd &motion) const;
+    void   take(unsigned int body, const Point &x, const Vector3 &direction);
+    void   hold();
+    void   hold(DoFIndex dof);
+    Motion describe(const Eigen::VectorXd &motion) const;
 
     const Bodies                  &bodies_;
     const dealii::DoFHandler<dim> &dof_handler_;

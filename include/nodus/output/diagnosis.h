@@ -14,6 +14,7 @@
 #include <array>
 #include <deque>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace Nodus
@@ -63,7 +64,19 @@ namespace Nodus
     std::vector<Site> changing_sites; ///< the most changes first
     unsigned int      n_changed_sites = 0;
 
-    std::vector<std::string> free_motions; ///< rigid motions that nothing resists (contact/free_motions.h)
+    bool may_shrink = true; ///< smaller increments are worth a try
+
+    std::vector<std::string> free_motions; ///< rigid motions that nothing resists (contact/rigid_motions.h)
+    std::vector<std::string> left_free;    ///< what would be left of them if all sites with a master point were closed
+
+    /// A soft spring against the free motions of a body.
+    struct Spring
+    {
+      unsigned int          body, boundary_id;
+      std::array<bool, dim> components;
+      double                stiffness; ///< [pressure/length]
+    };
+    std::vector<Spring> springs;
 
     struct Pair
     {
@@ -181,8 +194,10 @@ namespace Nodus
     std::vector<std::string> evidence;
     struct Change
     {
-      std::string key; ///< as --set takes it
-      std::string now, proposed, reason;
+      std::string                                      key; ///< as --set takes it
+      std::string                                      now, proposed, reason;
+      std::vector<std::pair<std::string, std::string>> together = {}; ///< keys of the same section that go with it
+      std::string                                      block = {}; ///< a subsection to append instead of a key to set
     };
     std::vector<Change> changes;
   };

@@ -46,6 +46,12 @@ namespace Nodus
                          const double       residual,
                          const double       tolerance,
                          SuspectedCause    &cause);
+    /// Motions that nothing resists.
+    void add_free_body(const Parameters      &parameters,
+                       const History         &history,
+                       const FailureEvidence &evidence,
+                       Causes                &causes);
+    void add_over_constraint(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
     /// Statuses that come and go.
     void add_status_cycle(const Parameters      &parameters,
                           const History         &history,

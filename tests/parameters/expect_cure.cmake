@@ -1,0 +1,40 @@
+# NODUS on PRM fails for want of a solution; the page that it leaves says what to paste: with the subsections appended to
+# PRM, and with each line of options, it succeeds.
+
+file(REMOVE_RECURSE ${FOLDER})
+file(MAKE_DIRECTORY ${FOLDER})
+
+function(run result)
+  execute_process(COMMAND ${NODUS} ${ARGN} --set "Output/Results folder=results" --set "Output/Write VTU=false"
+    WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE code OUTPUT_VARIABLE screen ERROR_VARIABLE message)
+  set(${result} "${code}" PARENT_SCOPE)
+  set(screen "${screen}${message}" PARENT_SCOPE)
+endfunction()
+
+run(code ${PRM})
+if(NOT code STREQUAL "1")
+  message(FATAL_ERROR "exit code ${code} instead of 1\n${screen}")
+endif()
+file(READ ${FOLDER}/results/diagnosis.md page)
+string(REPLACE ";" "," page "${page}")
+if(NOT page MATCHES "To append to the case:\n\n```\n([^`]*)```")
+  message(FATAL_ERROR "nothing to append\n${page}")
+endif()
+file(READ ${PRM} case)
+file(WRITE ${FOLDER}/appended.prm "${case}\n${CMAKE_MATCH_1}")
+run(code appended.prm)
+if(NOT code STREQUAL "0")
+  message(FATAL_ERROR "with what was to be appended: exit code ${code}\n${screen}")
+endif()
+
+string(REGEX MATCHALL "\n--set [^\n]*" lines "${page}")
+if(NOT lines)
+  message(FATAL_ERROR "no options\n${page}")
+endif()
+foreach(line ${lines})
+  separate_arguments(options UNIX_COMMAND "${line}")
+  run(code ${PRM} ${options})
+  if(NOT code STREQUAL "0")
+    message(FATAL_ERROR "with ${line}: exit code ${code}\n${screen}")
+  endif()
+endforeach()
