@@ -188,6 +188,23 @@ namespace Nodus
     }
   }
 
+  /// What the run starts from, as increment 0. The first increment pairs anew, as if this had not been.
+  void ContactProblem::Implementation::write_initial_state()
+  {
+    if (!vtu || parameters.output.vtu_interval == 0)
+      return;
+    pair_surfaces();
+    const auto timer = profile.time(Phase::output);
+    state.prescribed.assign(state.x.size(), Vector3());
+    residual = contact->assemble(state, system);
+    fields   = Nodus::contact_fields(
+        parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state, residual);
+    relevant_u = solution.block(0);
+    vtu->write(0, 0., relevant_u, fields);
+    fields.clear();
+    paired_before = false;
+  }
+
   void ContactProblem::Implementation::summary()
   {
     std::ostringstream text;
@@ -250,6 +267,8 @@ namespace Nodus
     }
     if (restart)
       read_checkpoint();
+    else
+      write_initial_state();
     const auto report_anyway = [&]
     {
       if (const std::string problem = report_profile(false); !problem.empty())

@@ -428,10 +428,12 @@ namespace Nodus
       prm.add_parameter("Write VTU",
                         output.write_vtu,
                         "Whether fields are written [-]; false leaves the tables (a series of runs, measuring time).");
-      prm.add_parameter("VTU interval",
-                        output.vtu_interval,
-                        "Increments between two files of the fields [-]; 0: the last increment only.",
-                        count);
+      prm.add_parameter(
+          "VTU interval",
+          output.vtu_interval,
+          "Increments between two files of the fields [-], the first of which has the initial state; 0: the last "
+          "increment only.",
+          count);
       prm.add_parameter("Checkpoint interval",
                         output.checkpoint_interval,
                         "Increments between two checkpoints, from which --restart continues [-]; 0: only where a "

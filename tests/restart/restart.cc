@@ -98,10 +98,14 @@ namespace
                                      "bodies.pvd",
                                      "contact.pvd",
                                      "bodies_0008.vtu",
+                                     "contact_0000.vtu",
                                      "rigid_bodies.csv"})
         if (file != "rigid_bodies.csv" || !p.bodies[1].rigid_free.empty())
           check("  " + file + ": the same text",
                 !contents(whole, file).empty() && contents(whole, file) == contents(parts, file));
+      const std::string series = contents(whole, "contact.pvd");
+      check("  the time series begin with the initial state",
+            series.find("timestep") == series.find("timestep=\"0\" group=\"\" part=\"0\" file=\"contact_0000.vtu\""));
       return;
     }
     check("  fields: the same to 1e-6", difference(continued, reference) <= 1e-6);
