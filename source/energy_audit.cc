@@ -159,10 +159,13 @@ namespace Nodus
       std::ostringstream text;
       text.precision(2);
       text << "warning: " << 100. * imbalance / increment.throughput()
-           << " % of the energy of this increment is not accounted for: work is that of the mean force, which is not "
-              "exact where forces do not grow in proportion to displacements; half the increment leaves about a "
-              "quarter of "
-              "it, half where sites begin to slip or to flow";
+           << " % of the energy of this increment is not accounted for (" << imbalance << " of "
+           << increment.throughput();
+      if (increment.stabilisation > 0.)
+        text << ", and viscous stabilisation took " << increment.stabilisation;
+      text << "): contact, slip or yielding set in within it, where work with the mean force is not exact; the state at "
+              "its end is in equilibrium all the same, and if energies matter, half the increment leaves a half to a "
+              "quarter of it ('Load stepping/Increments')";
       console.remark(text.str());
     }
   }

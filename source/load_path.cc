@@ -8,6 +8,12 @@
 
 namespace Nodus
 {
+  namespace
+  {
+    /// Forces of viscous stabilisation beyond this part of the largest nodal force are warned of.
+    constexpr double large_drag = 0.01;
+  } // namespace
+
   /// Increment after increment; one that fails is tried again in halves, from exactly the state before.
   void ContactProblem::Implementation::follow_load_path()
   {
@@ -102,9 +108,13 @@ namespace Nodus
   {
     if (!stabilisation->acts())
       return;
+    const double       part = drag.linfty_norm() / force_scale;
     std::ostringstream text;
-    text << "viscous stabilisation: largest nodal force " << drag.linfty_norm() << ", " << std::setprecision(2)
-         << 100. * drag.linfty_norm() / force_scale << " % of the largest one of all";
+    text << std::setprecision(2) << "viscous stabilisation carries " << 100. * part << " % of the largest nodal force ("
+         << drag.linfty_norm() << " of " << force_scale << ')';
+    if (part > large_drag)
+      text << ": dashpots hold this state in part; they are gone at t = " << path.interval_end()
+           << ", and if states before that matter, give more increments or a smaller 'Viscous stabilisation'";
     console.remark(text.str());
   }
 

@@ -168,7 +168,8 @@ int main(int argc, char **argv)
               1e-4);
     }
     check("what the mean force misses is warned of once",
-          !root() || (lines.str().find("of the energy of this increment is not accounted for") != std::string::npos &&
+          !root() || (lines.str().find("50 % of the energy of this increment is not accounted for (0.075 of 0.15)") !=
+                          std::string::npos &&
                       lines.str().find("not accounted for") == lines.str().rfind("not accounted for")));
   }
 }
