@@ -1,4 +1,5 @@
 #include <nodus/contact_problem_implementation.h>
+#include <nodus/mesh/sides.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -9,6 +10,7 @@
 #include <limits>
 #include <set>
 #include <sstream>
+#include <tuple>
 
 // What --validate says about a case: bodies, what each condition takes hold of, gaps, loops, load path.
 
@@ -20,6 +22,8 @@ namespace Nodus
 
     /// Gaps up to this part of a face are printed as 0.
     constexpr double round_off = 1e-12;
+    /// Means of gaps that differ from those of the nodes by more than this part of a face are explained.
+    constexpr double seen_bulge = 1e-4;
 
     std::string counted(const unsigned int n, const std::string &what)
     {
@@ -171,6 +175,7 @@ namespace Nodus
     {
       unsigned int sites = 0, found = 0, closed = 0, adjusted = 0;
       double       smallest = std::numeric_limits<double>::max(), largest = -std::numeric_limits<double>::max();
+      double       smallest_at_nodes = smallest, largest_at_nodes = largest; ///< of averaged jumps: of the nodes alone
     };
   } // namespace
 
@@ -186,6 +191,7 @@ namespace Nodus
       if (cell->is_locally_owned())
         ++cells[cell->material_id()];
     dealii::Utilities::MPI::sum(cells, communicator, cells);
+    const auto sides = sides_of(p.bodies, p.dof_handler, *p.mapping);
     for (unsigned int b = 0; b < p.bodies.size(); ++b)
     {
       const auto        &material = parameters.bodies[b].material;
@@ -195,7 +201,8 @@ namespace Nodus
       text << "  body " << b + 1 << " (" << p.bodies.name(b) << "): ";
       if (p.bodies.has_mesh(b))
         text << counted(cells[b], "cell") << ", " << size[0] << " x " << size[1] << " x " << size[2] << " from "
-             << coordinates(ends.first) << " to " << coordinates(ends.second) << ", boundary ids "
+             << coordinates(without_round_off(ends.first, size.norm())) << " to "
+             << coordinates(without_round_off(ends.second, size.norm())) << ", boundary ids "
              << joined(p.bodies.boundary_ids(b), ", ") << "; ";
       else
         text << "no mesh; ";
@@ -209,6 +216,8 @@ namespace Nodus
       else
         text << text_of(material.law) << ", E = " << material.youngs_modulus << ", nu = " << material.poissons_ratio;
       p.console.line(text.str());
+      for (const auto &[id, side] : sides[b])
+        p.console.line("    boundary id " + std::to_string(id) + ": " + side.text());
     }
 
     for (unsigned int n = 0; n < parameters.boundary_conditions.size(); ++n)
@@ -239,26 +248,75 @@ namespace Nodus
           const double gap = std::abs(distance) < round_off * p.surfaces->face_size(pair) ? 0. : -distance;
           gaps.smallest    = std::min(gaps.smallest, gap);
           gaps.largest     = std::max(gaps.largest, gap);
+          if (const Projection &master = p.pairing[k].master;
+              parameters.contact_pairs[pair].scheme == ContactPairParameters::Scheme::averaged && master.found())
+          {
+            const double at_node =
+                p.pairing[k].normal * (p.geometry->master[pair].at(master.face, master.xi, master.eta).x -
+                                       p.geometry->position(*p.surfaces, k)) -
+                p.status->adjustment(k);
+            gaps.smallest_at_nodes = std::min(gaps.smallest_at_nodes, at_node);
+            gaps.largest_at_nodes  = std::max(gaps.largest_at_nodes, at_node);
+          }
         }
       for (unsigned int *count : {&gaps.sites, &gaps.found, &gaps.closed, &gaps.adjusted})
         *count = dealii::Utilities::MPI::sum(*count, communicator);
-      gaps.smallest = dealii::Utilities::MPI::min(gaps.smallest, communicator);
-      gaps.largest  = dealii::Utilities::MPI::max(gaps.largest, communicator);
+      for (double *value : {&gaps.smallest, &gaps.smallest_at_nodes})
+        *value = dealii::Utilities::MPI::min(*value, communicator);
+      for (double *value : {&gaps.largest, &gaps.largest_at_nodes})
+        *value = dealii::Utilities::MPI::max(*value, communicator);
 
       const std::string  name = "  contact pair " + std::to_string(pair + 1);
       std::ostringstream text;
       text << name << ": " << gaps.found << " of " << gaps.sites
            << (p.surfaces->has_points(pair) ? " integration points" : " slave nodes") << " find a master point";
+      const double size = p.surfaces->face_size(pair);
       if (gaps.found > 0)
         text << ", gap " << gaps.smallest << " to " << gaps.largest << ", " << gaps.closed << " start closed";
       if (gaps.adjusted > 0)
         text << ", " << gaps.adjusted << " adjusted";
       p.console.line(name + ": " + describe(parameters.contact_pairs[pair]));
       p.console.line(text.str());
+      if (gaps.smallest_at_nodes <= gaps.largest_at_nodes &&
+          std::max(std::abs(gaps.smallest - gaps.smallest_at_nodes), std::abs(gaps.largest - gaps.largest_at_nodes)) >
+              seen_bulge * size)
+      {
+        std::ostringstream bulge;
+        for (double *value : {&gaps.smallest_at_nodes, &gaps.largest_at_nodes})
+          *value = std::abs(*value) < round_off * size ? 0. : *value;
+        bulge << "    of the nodes themselves " << gaps.smallest_at_nodes << " to " << gaps.largest_at_nodes
+              << "; contact acts on means around them, which touching faces of length h and relative radius R lower by "
+                 "h^2/(12 R) in each direction";
+        p.console.line(bulge.str());
+      }
+      for (const auto &[side, region, is_mesh] :
+           {std::make_tuple("slave", &parameters.contact_pairs[pair].slave, true),
+            std::make_tuple(
+                "master", &parameters.contact_pairs[pair].master, !parameters.contact_pairs[pair].has_rigid_master())})
+        if (is_mesh && is_one_face_wide(Region(*region, p.bodies, name), p.dof_handler, *p.mapping))
+          p.console.line(name + ": the " + side +
+                         " surface is one face wide; have more across it, unless the problem is a plane one");
       if (const auto loci = p.site_loci(lost, 3); !loci.empty())
         p.console.line(name + ": no master point for " + joined(loci, "; ") +
                        (gaps.sites - gaps.found > loci.size() ? "; ..." : ""));
     }
+
+    p.residual.jump.resize(p.surfaces->n_sites()); // nothing rubs yet
+    p.impose(p.path.target());
+    std::string free;
+    bool        may_wait = true; // friction may come to turn rigid bodies
+    for (const auto &motion : p.free_motions(OwnedNodes(p.dof_handler, *p.mapping)))
+    {
+      free += (free.empty() ? "" : "; ") + motion.text;
+      for (unsigned int b = 0; b < p.bodies.size(); ++b)
+        may_wait = may_wait && (parameters.bodies[b].rigid || motion.moves[b] == std::array<bool, dim>{});
+    }
+    if (!free.empty())
+      p.console.line(std::string(may_wait ? "  " : "  warning: ") +
+                     "nothing holds these motions as the run begins: " + free + "; " +
+                     (p.stabilisation->acts() ? "viscous stabilisation does"
+                      : may_wait              ? "contact or its friction has to"
+                                 : p.ways_to_hold("hold them with boundary conditions (soft springs will do)")));
 
     p.console.line("  loops: geometry " + text_of(parameters.geometry_loop.mode) + ", threshold " +
                    text_of(parameters.threshold_loop.mode) + ", status " + text_of(parameters.status_loop.mode));
