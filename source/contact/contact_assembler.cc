@@ -159,149 +159,182 @@ namespace Nodus
     std::vector<PointJump> jumps;
     LocalMatrix            A;
     LocalVector            r, b, r_t; // r_t: derivative of r with respect to the threshold at the point
-    for (const ContactPoint &point : weights_.points())
+    // Slave nodes whose pressures the thresholds of a face follow, their numbers there, the threshold's derivative at a
+    // point, and that of r.
+    std::vector<unsigned int> followed, number(unsymmetric ? n : 0, dealii::numbers::invalid_unsigned_int);
+    Eigen::VectorXd           point_derivative;
+    Eigen::MatrixXd           V;
+    const auto               &points = weights_.points();
+    for (auto begin = points.begin(), end = begin; begin != points.end(); begin = end)
     {
-      if (point.owner != rank)
+      // The points of a face have the same unknowns and are summed before their jumps are expanded; a point with a site
+      // of its own has its own jump.
+      const bool pointwise = begin->site != dealii::numbers::invalid_unsigned_int;
+      do
+        ++end;
+      while (!pointwise && end != points.end() && end->site == begin->site && end->slaves == begin->slaves);
+      if (begin->owner != rank)
         continue;
-      const bool         pointwise = point.site != dealii::numbers::invalid_unsigned_int;
-      const unsigned int n_nodes = point.slaves.size(), n_jumps = pointwise ? 1 : n_nodes, first = 3 * n_jumps;
-
-      // Filtered fields at the point.
+      const unsigned int n_nodes = begin->slaves.size(), n_jumps = pointwise ? 1 : n_nodes, first = 3 * n_jumps;
+      const unsigned int n_unknowns = first + 3 * n_nodes;
       nodes.resize(n_nodes);
       jumps.resize(n_jumps);
-      double  lambda_c = 0, lambda_o = 0, distance = 0, threshold = 0;
-      Column3 Lambda_stick = Column3::Zero(), slip_stick = Column3::Zero(), Lambda_slip = Column3::Zero(),
-              slip_slip      = Column3::Zero();
-      Column3 Lambda_void[2] = {Column3::Zero(), Column3::Zero()};
-      bool    slips          = false;
-      for (unsigned int a = 0; a < n_nodes; ++a)
-      {
-        PointNode         &node    = nodes[a];
-        const unsigned int k       = point.slaves[a];
-        const unsigned int filter  = pointwise ? point.site : k;
-        const double       phi     = point.shape[a];
-        const SitePairing &pairing = pairing_[k];
-        const bool         contact = status_.contact(filter), friction = status_.friction(filter);
-        node.slave       = k;
-        node.contact     = contact ? phi : 0.;
-        node.open        = contact ? 0. : phi;
-        const bool stick = status_.stick(filter) && !status_.projected(filter);
-        node.stick       = friction && stick ? phi : 0.;
-        node.slip        = friction && !stick ? phi : 0.;
-        for (unsigned int i = 0; i < 2; ++i)
-        {
-          const bool carries   = friction && pairing.tangent_free[i];
-          node.void_tangent[i] = carries ? 0. : phi;
-          node.axis[i]         = eigen(pairing.tangent[i]);
-          node.tangent.row(i) =
-              pairing.tangent_free[i] ? node.axis[i].transpose().eval() : Column3::Zero().transpose().eval();
-          Lambda_void[i] += node.void_tangent[i] * state.Lambda[k][i] * node.axis[i];
-        }
-        const Column3 Lambda = node.tangent.transpose() * Eigen::Vector2d(state.Lambda[k][0], state.Lambda[k][1]);
-        lambda_c += node.contact * state.lambda[k];
-        lambda_o += node.open * state.lambda[k];
-        Lambda_stick += node.stick * Lambda;
-        Lambda_slip += node.slip * Lambda;
-        slips = slips || node.slip != 0.;
-      }
-      for (unsigned int a = 0; a < n_jumps; ++a)
-      {
-        PointJump         &jump     = jumps[a];
-        const unsigned int s        = pointwise ? point.site : point.slaves[a];
-        const double       phi      = pointwise ? 1. : point.shape[a];
-        const bool         friction = status_.friction(s);
-        jump.site                   = s;
-        jump.contact                = status_.contact(s) ? phi : 0.;
-        const bool stick            = status_.stick(s) && !status_.projected(s);
-        jump.stick                  = friction && stick ? phi : 0.;
-        jump.slip                   = friction && !stick ? phi : 0.;
-        jump.normal                 = eigen(pairing_[s].normal);
-        jump.projector.setZero();
-        for (unsigned int i = 0; i < 2; ++i)
-          if (pairing_[s].tangent_free[i])
-          {
-            const Column3 t = eigen(pairing_[s].tangent[i]);
-            jump.projector += pairing_[s].friction_scale[i] * t * t.transpose();
-          }
-        const Column3 slip = jump.projector * eigen(jump_.jump_of_increment(s, state.increment));
-        distance += jump.contact * this->distance(state, s);
-        threshold += phi * (friction ? status_.threshold(s) : 0.);
-        slip_stick += jump.stick * slip;
-        slip_slip += jump.slip * slip;
-      }
-      const double h_n = status_.normal_augmentation(point.slaves[0]);
-      // the normal law of a point is projected, too: its pressure is lambda - h_n d_n where that is negative
-      const double stiffness = pointwise && status_.projected(point.site) ? h_n : 0.;
-      const double h_tau     = status_.tangential_augmentation(point.slaves[0], threshold);
-      Column3      pi        = Column3::Zero();
-      Matrix3      K_B       = Matrix3::Zero();
-      const bool   held      = status_.holds_friction(pointwise ? point.site : point.slaves[0]);
-      if (slips && held) // Lambda stays as it is
-        pi = Lambda_slip;
-      else if (slips)
-        direction(Lambda_slip + h_tau * slip_slip, pi, K_B);
-
-      const unsigned int n_unknowns = first + 3 * n_nodes;
       A.setZero(n_unknowns, n_unknowns);
       r.setZero(n_unknowns);
-      r_t.setZero(n_unknowns);
       b.setZero(n_unknowns);
-      const double  W = point.weight, Wt = point.weight * threshold;
-      const Column3 pi_t = slips ? Column3(K_B * slip_slip * (h_tau / -threshold)) : pi; // h_tau ~ 1/threshold
-      for (unsigned int a = 0; a < n_jumps; ++a)
+      followed.clear();
+      for (unsigned int a = 0; a < n_jumps && unsymmetric; ++a)
+        for (const auto &[k, derivative] : d_threshold[pointwise ? begin->site : begin->slaves[a]])
+          if (number[k] == dealii::numbers::invalid_unsigned_int)
+          {
+            number[k] = followed.size();
+            followed.push_back(k);
+          }
+      V.setZero(n_unknowns, followed.size());
+      for (auto p = begin; p != end; ++p)
       {
-        const PointJump &i  = jumps[a];
-        const unsigned   ia = 3 * a;
-        r.segment<3>(ia)    = -W * i.contact * (lambda_c - stiffness * distance) * i.normal -
-                           Wt * i.stick * i.projector * Lambda_stick - Wt * i.slip * i.projector * pi;
-        r_t.segment<3>(ia) = -W * i.projector * ((n_nodes > 1 ? i.stick : 0.) * Lambda_stick + i.slip * pi) -
-                             Wt * i.slip * i.projector * pi_t;
-        b.segment<3>(ia) = eigen(jump_.jump(i.site, state.prescribed));
-        Assert(i.contact == 0. || jump_.begin(i.site) != jump_.end(i.site),
-               dealii::ExcMessage("the partner of a site in contact is not on this rank"));
+        const ContactPoint &point = *p;
+        // Filtered fields at the point.
+        double  lambda_c = 0, lambda_o = 0, distance = 0, threshold = 0;
+        Column3 Lambda_stick = Column3::Zero(), slip_stick = Column3::Zero(), Lambda_slip = Column3::Zero(),
+                slip_slip      = Column3::Zero();
+        Column3 Lambda_void[2] = {Column3::Zero(), Column3::Zero()};
+        bool    slips          = false;
+        for (unsigned int a = 0; a < n_nodes; ++a)
+        {
+          PointNode         &node    = nodes[a];
+          const unsigned int k       = point.slaves[a];
+          const unsigned int filter  = pointwise ? point.site : k;
+          const double       phi     = point.shape[a];
+          const SitePairing &pairing = pairing_[k];
+          const bool         contact = status_.contact(filter), friction = status_.friction(filter);
+          node.slave       = k;
+          node.contact     = contact ? phi : 0.;
+          node.open        = contact ? 0. : phi;
+          const bool stick = status_.stick(filter) && !status_.projected(filter);
+          node.stick       = friction && stick ? phi : 0.;
+          node.slip        = friction && !stick ? phi : 0.;
+          for (unsigned int i = 0; i < 2; ++i)
+          {
+            const bool carries   = friction && pairing.tangent_free[i];
+            node.void_tangent[i] = carries ? 0. : phi;
+            node.axis[i]         = eigen(pairing.tangent[i]);
+            node.tangent.row(i) =
+                pairing.tangent_free[i] ? node.axis[i].transpose().eval() : Column3::Zero().transpose().eval();
+            Lambda_void[i] += node.void_tangent[i] * state.Lambda[k][i] * node.axis[i];
+          }
+          const Column3 Lambda = node.tangent.transpose() * Eigen::Vector2d(state.Lambda[k][0], state.Lambda[k][1]);
+          lambda_c += node.contact * state.lambda[k];
+          lambda_o += node.open * state.lambda[k];
+          Lambda_stick += node.stick * Lambda;
+          Lambda_slip += node.slip * Lambda;
+          slips = slips || node.slip != 0.;
+        }
+        for (unsigned int a = 0; a < n_jumps; ++a)
+        {
+          PointJump         &jump     = jumps[a];
+          const unsigned int s        = pointwise ? point.site : point.slaves[a];
+          const double       phi      = pointwise ? 1. : point.shape[a];
+          const bool         friction = status_.friction(s);
+          jump.site                   = s;
+          jump.contact                = status_.contact(s) ? phi : 0.;
+          const bool stick            = status_.stick(s) && !status_.projected(s);
+          jump.stick                  = friction && stick ? phi : 0.;
+          jump.slip                   = friction && !stick ? phi : 0.;
+          jump.normal                 = eigen(pairing_[s].normal);
+          jump.projector.setZero();
+          for (unsigned int i = 0; i < 2; ++i)
+            if (pairing_[s].tangent_free[i])
+            {
+              const Column3 t = eigen(pairing_[s].tangent[i]);
+              jump.projector += pairing_[s].friction_scale[i] * t * t.transpose();
+            }
+          const Column3 slip = jump.projector * eigen(jump_.jump_of_increment(s, state.increment));
+          distance += jump.contact * this->distance(state, s);
+          threshold += phi * (friction ? status_.threshold(s) : 0.);
+          slip_stick += jump.stick * slip;
+          slip_slip += jump.slip * slip;
+        }
+        const double h_n = status_.normal_augmentation(point.slaves[0]);
+        // the normal law of a point is projected, too: its pressure is lambda - h_n d_n where that is negative
+        const double stiffness = pointwise && status_.projected(point.site) ? h_n : 0.;
+        const double h_tau     = status_.tangential_augmentation(point.slaves[0], threshold);
+        Column3      pi        = Column3::Zero();
+        Matrix3      K_B       = Matrix3::Zero();
+        const bool   held      = status_.holds_friction(pointwise ? point.site : point.slaves[0]);
+        if (slips && held) // Lambda stays as it is
+          pi = Lambda_slip;
+        else if (slips)
+          direction(Lambda_slip + h_tau * slip_slip, pi, K_B);
 
-        for (unsigned int c = 0; c < n_nodes; ++c)
+        r_t.setZero(n_unknowns);
+        const double  W = point.weight, Wt = point.weight * threshold;
+        const Column3 pi_t = slips ? Column3(K_B * slip_slip * (h_tau / -threshold)) : pi; // h_tau ~ 1/threshold
+        for (unsigned int a = 0; a < n_jumps; ++a)
         {
-          const PointNode &j        = nodes[c];
-          const unsigned   jc       = first + 3 * c;
-          A.block<3, 1>(ia, jc)     = -W * i.contact * j.contact * i.normal;
-          A.block<3, 2>(ia, jc + 1) = -Wt * i.stick * j.stick * i.projector * j.tangent.transpose();
+          const PointJump &i  = jumps[a];
+          const unsigned   ia = 3 * a;
+          r.segment<3>(ia) += -W * i.contact * (lambda_c - stiffness * distance) * i.normal -
+                              Wt * i.stick * i.projector * Lambda_stick - Wt * i.slip * i.projector * pi;
+          r_t.segment<3>(ia) = -W * i.projector * ((n_nodes > 1 ? i.stick : 0.) * Lambda_stick + i.slip * pi) -
+                               Wt * i.slip * i.projector * pi_t;
+          b.segment<3>(ia) = eigen(jump_.jump(i.site, state.prescribed));
+          Assert(i.contact == 0. || jump_.begin(i.site) != jump_.end(i.site),
+                 dealii::ExcMessage("the partner of a site in contact is not on this rank"));
+
+          for (unsigned int c = 0; c < n_nodes; ++c)
+          {
+            const PointNode &j  = nodes[c];
+            const unsigned   jc = first + 3 * c;
+            A.block<3, 1>(ia, jc) -= W * i.contact * j.contact * i.normal;
+            A.block<3, 2>(ia, jc + 1) -= Wt * i.stick * j.stick * i.projector * j.tangent.transpose();
+            if (slips)
+              A.block<3, 2>(ia, jc + 1) -= Wt * i.slip * j.slip * i.projector * K_B * j.tangent.transpose();
+          }
+          if (stiffness > 0. && i.contact != 0.)
+            A.block<3, 3>(ia, ia) += W * stiffness * i.normal * i.normal.transpose();
           if (slips)
-            A.block<3, 2>(ia, jc + 1) -= Wt * i.slip * j.slip * i.projector * K_B * j.tangent.transpose();
-          A.block<3, 3>(jc, ia) = A.block<3, 3>(ia, jc).transpose().eval();
+            for (unsigned int c = 0; c < n_jumps; ++c)
+              A.block<3, 3>(ia, 3 * c) += -Wt * h_tau * i.slip * jumps[c].slip * i.projector * K_B * jumps[c].projector;
         }
-        if (stiffness > 0. && i.contact != 0.)
-          A.block<3, 3>(ia, ia) = W * stiffness * i.normal * i.normal.transpose();
-        if (slips)
-          for (unsigned int c = 0; c < n_jumps; ++c)
-            A.block<3, 3>(ia, 3 * c) += -Wt * h_tau * i.slip * jumps[c].slip * i.projector * K_B * jumps[c].projector;
-      }
-      for (unsigned int a = 0; a < n_nodes; ++a)
-      {
-        const PointNode &i  = nodes[a];
-        const unsigned   ia = first + 3 * a;
-        law_residual[4 * i.slave + 3] -= std::abs(i.stick + i.slip) * Wt;
-        r(ia) = -W * i.open * lambda_o / h_n - W * i.contact * distance;
-        r.segment<2>(ia + 1) =
-            -Wt * i.stick * i.tangent * slip_stick + (Wt / h_tau) * i.slip * i.tangent * (Lambda_slip - pi);
-        r_t.segment<2>(ia + 1) = -(Wt / h_tau) * i.slip * i.tangent * pi_t;
-        if (n_nodes > 1)
-          r_t.segment<2>(ia + 1) +=
-              -W * i.stick * i.tangent * slip_stick + (2. * W / h_tau) * i.slip * i.tangent * (Lambda_slip - pi);
-        for (unsigned int t = 0; t < 2 && !held; ++t)
-          r(ia + 1 + t) -= W * i.void_tangent[t] * Lambda_void[t].dot(i.axis[t]);
-        for (unsigned int c = 0; c < n_nodes; ++c)
+        for (unsigned int a = 0; a < n_nodes; ++a)
         {
-          const PointNode &j  = nodes[c];
-          const unsigned   jc = first + 3 * c;
-          A(ia, jc)           = -W / h_n * i.open * j.open;
-          if (slips)
-            A.block<2, 2>(ia + 1, jc + 1) =
-                Wt / h_tau * i.slip * j.slip * i.tangent * (Matrix3::Identity() - K_B) * j.tangent.transpose();
-          for (unsigned int t = 0; t < 2; ++t)
-            A(ia + 1 + t, jc + 1 + t) -= W * i.void_tangent[t] * j.void_tangent[t] * i.axis[t].dot(j.axis[t]);
+          const PointNode &i  = nodes[a];
+          const unsigned   ia = first + 3 * a;
+          law_residual[4 * i.slave + 3] -= std::abs(i.stick + i.slip) * Wt;
+          r(ia) += -W * i.open * lambda_o / h_n - W * i.contact * distance;
+          r.segment<2>(ia + 1) +=
+              -Wt * i.stick * i.tangent * slip_stick + (Wt / h_tau) * i.slip * i.tangent * (Lambda_slip - pi);
+          r_t.segment<2>(ia + 1) = -(Wt / h_tau) * i.slip * i.tangent * pi_t;
+          if (n_nodes > 1)
+            r_t.segment<2>(ia + 1) +=
+                -W * i.stick * i.tangent * slip_stick + (2. * W / h_tau) * i.slip * i.tangent * (Lambda_slip - pi);
+          for (unsigned int t = 0; t < 2 && !held; ++t)
+            r(ia + 1 + t) -= W * i.void_tangent[t] * Lambda_void[t].dot(i.axis[t]);
+          for (unsigned int c = 0; c < n_nodes; ++c)
+          {
+            const PointNode &j  = nodes[c];
+            const unsigned   jc = first + 3 * c;
+            A(ia, jc) -= W / h_n * i.open * j.open;
+            if (slips)
+              A.block<2, 2>(ia + 1, jc + 1) +=
+                  Wt / h_tau * i.slip * j.slip * i.tangent * (Matrix3::Identity() - K_B) * j.tangent.transpose();
+            for (unsigned int t = 0; t < 2; ++t)
+              A(ia + 1 + t, jc + 1 + t) -= W * i.void_tangent[t] * j.void_tangent[t] * i.axis[t].dot(j.axis[t]);
+          }
+        }
+
+        if (unsymmetric)
+        {
+          point_derivative.setZero(followed.size());
+          for (const PointJump &jump : jumps)
+            if (jump.slip != 0. || (jump.stick != 0. && n_nodes > 1))
+              for (const auto &[k, derivative] : d_threshold[jump.site])
+                point_derivative(number[k]) += jump.contact * derivative;
+          V += r_t * point_derivative.transpose();
         }
       }
+      A.block(first, 0, 3 * n_nodes, first) = A.block(0, first, first, 3 * n_nodes).transpose();
 
       const LocalVector local_rhs = -(r + A * b);
       for (unsigned int l = 0; l < 3; ++l)
@@ -349,19 +382,16 @@ namespace Nodus
                                    [&](const DoFIndex column, const double column_weight)
                                    { add(system.contact, row, column, row_weight * column_weight * A(i, j)); });
                              });
-      if (unsymmetric)
-        for (const PointJump &jump : jumps)
-          if (jump.slip != 0. || (jump.stick != 0. && n_nodes > 1))
-            for (const auto &[k, derivative] : d_threshold[jump.site])
-              for (unsigned int i = 0; i < n_unknowns; ++i)
-                if (r_t(i) != 0.)
-                  for_each_unknown(i,
-                                   [&](const DoFIndex row, const double weight) {
-                                     add(system.variation,
-                                         row,
-                                         layout.lambda(surfaces_.multiplier(k)),
-                                         weight * r_t(i) * jump.contact * derivative);
-                                   });
+      for (unsigned int m = 0; m < followed.size(); ++m)
+      {
+        number[followed[m]]   = dealii::numbers::invalid_unsigned_int;
+        const DoFIndex lambda = layout.lambda(surfaces_.multiplier(followed[m]));
+        for (unsigned int i = 0; i < n_unknowns; ++i)
+          if (V(i, m) != 0.)
+            for_each_unknown(i,
+                             [&](const DoFIndex row, const double weight)
+                             { add(system.variation, row, lambda, weight * V(i, m)); });
+      }
     }
 
     system.rhs.block(1) = 0.;

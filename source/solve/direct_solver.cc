@@ -140,56 +140,71 @@ namespace Nodus
 
   bool DirectSolver::collect_entries(const LinearSystem &system, const std::vector<double> &scale)
   {
-    const DoFIndex n_u     = system.layout->n_u;
-    bool           changed = false, finite = true;
-    std::size_t    n_entries = 0;
+    const DoFIndex n_u = system.layout->n_u;
 
-    const auto add = [&](const DoFIndex i, const DoFIndex j, const double v)
+    // All entries in sequence, those of one place apart.
+    const auto for_entries = [&](const auto &f)
     {
-      const int    row = static_cast<int>(i) + 1, column = static_cast<int>(j) + 1;
-      const double scaled = v * (i < n_u ? 1. : scale[i - n_u]) * (j < n_u ? 1. : scale[j - n_u]);
-      finite              = finite && std::isfinite(scaled);
-      if (n_entries == row_.size())
-      {
-        changed = true;
-        row_.push_back(row);
-        column_.push_back(column);
-        value_.push_back(scaled);
-      }
-      else
-      {
-        changed            = changed || row_[n_entries] != row || column_[n_entries] != column;
-        row_[n_entries]    = row;
-        column_[n_entries] = column;
-        value_[n_entries]  = scaled;
-      }
-      ++n_entries;
+      const NodeMatrix &bulk  = system.bulk;
+      const NodeMap    &nodes = bulk.map();
+      for (unsigned int r = 0; r < nodes.n_owned(); ++r)
+        bulk.for_row(r,
+                     [&](const unsigned int c, const double *block, const bool transposed)
+                     {
+                       const DoFIndex row = dim * nodes.global(r), column = dim * nodes.global(c);
+                       for (unsigned int i = 0; i < dim; ++i)
+                         for (unsigned int j = 0; j < dim; ++j)
+                           if (row + i <= column + j || !symmetric_)
+                             f(row + i, column + j, block[transposed ? dim * j + i : dim * i + j]);
+                     });
+      for (const TripletMatrix *part : {&system.contact, &system.variation})
+        for (std::size_t k = 0; k < part->value.size(); ++k)
+          if (part->row[k] <= part->column[k] || !symmetric_)
+            f(part->row[k], part->column[k], part->value[k]);
     };
 
-    const NodeMatrix &bulk  = system.bulk;
-    const NodeMap    &nodes = bulk.map();
-    for (unsigned int r = 0; r < nodes.n_owned(); ++r)
-      bulk.for_row(r,
-                   [&](const unsigned int c, const double *block, const bool transposed)
-                   {
-                     const DoFIndex row = dim * nodes.global(r), column = dim * nodes.global(c);
-                     for (unsigned int i = 0; i < dim; ++i)
-                       for (unsigned int j = 0; j < dim; ++j)
-                         if (row + i <= column + j || !symmetric_)
-                           add(row + i, column + j, block[transposed ? dim * j + i : dim * i + j]);
-                   });
-    for (const TripletMatrix *part : {&system.contact, &system.variation})
-      for (std::size_t k = 0; k < part->value.size(); ++k)
-        if (part->row[k] <= part->column[k] || !symmetric_)
-          add(part->row[k], part->column[k], part->value[k]);
+    // Sorted by rows.
+    std::vector<std::size_t> begin(size_ + 1, 0);
+    for_entries([&](const DoFIndex i, DoFIndex, double) { ++begin[i + 1]; });
+    for (int i = 0; i < size_; ++i)
+      begin[i + 1] += begin[i];
+    std::vector<std::pair<int, double>> entries(begin[size_]);
+    std::vector<std::size_t>            next(begin.begin(), begin.end() - 1);
+    bool                                finite = true;
+    for_entries(
+        [&](const DoFIndex i, const DoFIndex j, const double v)
+        {
+          const double scaled = v * (i < n_u ? 1. : scale[i - n_u]) * (j < n_u ? 1. : scale[j - n_u]);
+          finite              = finite && std::isfinite(scaled);
+          entries[next[i]++]  = {static_cast<int>(j), scaled};
+        });
 
-    if (n_entries != row_.size())
+    // MUMPS adds up entries of one place, but contact has many of them, and it keeps them all.
+    constexpr std::size_t    nowhere = std::numeric_limits<std::size_t>::max();
+    std::vector<std::size_t> place(size_, nowhere); // of each column in the present row
+    std::vector<int>         row, column;
+    value_.clear();
+    for (int i = 0; i < size_; ++i)
     {
-      changed = true;
-      row_.resize(n_entries);
-      column_.resize(n_entries);
-      value_.resize(n_entries);
+      const std::size_t first = value_.size();
+      for (std::size_t k = begin[i]; k < begin[i + 1]; ++k)
+      {
+        const auto &[j, v] = entries[k];
+        if (place[j] == nowhere)
+        {
+          place[j] = value_.size();
+          row.push_back(i + 1);
+          column.push_back(j + 1);
+          value_.push_back(0.);
+        }
+        value_[place[j]] += v;
+      }
+      for (std::size_t k = first; k < value_.size(); ++k)
+        place[column[k] - 1] = nowhere;
     }
+    const bool changed = row != row_ || column != column_;
+    row_.swap(row);
+    column_.swap(column);
     if (dealii::Utilities::MPI::max(finite ? 0 : 1, communicator_) != 0)
       throw SolverFailure("Direct solver: the matrix holds a value that is not finite.",
                           SolverFailure::Kind::not_finite);

@@ -27,8 +27,8 @@ namespace Nodus
   private:
     struct Instance;
 
-    /// Refills the triplets with the equilibrated entries. @returns whether the pattern differs from that of the
-    /// previous call, on any rank.
+    /// Refills the triplets with the equilibrated entries, one for each place on this rank. @returns whether the
+    /// pattern differs from that of the previous call, on any rank.
     bool collect_entries(const LinearSystem &system, const std::vector<double> &scale);
 
     void factorise(bool pattern_changed);
