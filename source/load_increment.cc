@@ -73,6 +73,8 @@ namespace Nodus
       {
         merged   = attempt->merged;
         singular = false;
+        status->begin_increment();
+        pairing.forget_partners();
         diagnosis.begin_attempt(merged.names() + (attempt->approach ? "; friction grows" : ""));
         if (attempt->approach)
           approach_friction();
@@ -98,7 +100,6 @@ namespace Nodus
   /// Three nested loops around Newton (theory section 6); those merged into Newton are passed through once.
   void ContactProblem::Implementation::solve_loops()
   {
-    status->begin_increment();
     rigid_waits = 0;
     const Newton newton(parameters.newton, merged.any() ? patience : 0);
 

@@ -10,6 +10,8 @@ namespace Nodus
     /// A relative motion is free when the unconstrained nodes carry at least this much of the jump's weight: a node on
     /// a symmetry plane that projects slightly inside still moves with the plane.
     constexpr double free_weight = 0.1;
+    /// Projection tolerance of sites that had a partner, over that of others.
+    constexpr double partner_hysteresis = 2.;
 
     /// A SitePairing as sent to other ranks.
     struct PairingRecord
@@ -158,6 +160,7 @@ namespace Nodus
   {
     const Sites sites(surfaces, geometry);
     sites_.assign(surfaces.n_sites(), SitePairing());
+    had_partner_.resize(sites_.size(), 0);
     using Normal = ContactPairParameters::Normal;
     for (unsigned int s = 0; s < sites_.size(); ++s)
     {
@@ -169,8 +172,11 @@ namespace Nodus
       if (geometry.rigid[p] != nullptr)
         rigid = geometry.closest_on_rigid(p, sites.x[s], sites.normal[s]);
       else
-        pairing.master =
-            geometry.search[p].closest(sites.x[s], sites.normal[s], geometry.reach[p], pairs[p].projection_tolerance);
+      {
+        const double tolerance = (had_partner_[s] ? partner_hysteresis : 1.) * pairs[p].projection_tolerance;
+        pairing.master = geometry.search[p].closest(sites.x[s], sites.normal[s], geometry.reach[p], tolerance);
+        had_partner_[s] = had_partner_[s] || pairing.master.found();
+      }
       const bool averages = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
       const bool paired   = averages ? averaged.covered(s) : pairing.master.found() || rigid.found;
       // A node of the integration point scheme needs a frame for its multipliers even where its own projection fails.

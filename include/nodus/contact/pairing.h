@@ -29,15 +29,25 @@ namespace Nodus
     /// Projects all sites; frames are restricted to the relative motion that the constraints leave free. Nodes of the
     /// averaged scheme have a partner where @p averaged covers them. Each rank projects the sites it owns and
     /// passes their frames on; a ghost has its master point where the face is here. Collective.
+    ///
+    /// A site that a projection since forget_partners() has found a partner for keeps it up to twice the projection
+    /// tolerance: where contact itself moves a node across the limit, there would be no solution otherwise.
     void project(const std::vector<ContactPairParameters> &pairs,
                  const ContactSurfaces                    &surfaces,
                  const ContactGeometry                    &geometry,
                  const AveragedJump                       &averaged);
 
+    /// The next projection takes the tolerance as it is, for all sites.
+    void forget_partners()
+    {
+      had_partner_.clear();
+    }
+
     /// Sites of which only the tangents are known, from a checkpoint.
     void set_tangents(const std::vector<std::array<Vector3, 2>> &tangents)
     {
       sites_.assign(tangents.size(), SitePairing());
+      forget_partners();
       for (unsigned int s = 0; s < tangents.size(); ++s)
         sites_[s].tangent = tangents[s];
     }
@@ -55,6 +65,7 @@ namespace Nodus
     void share(const ContactSurfaces &surfaces);
 
     std::vector<SitePairing> sites_;
+    std::vector<char>        had_partner_; ///< of the owned sites, since forget_partners()
   };
 } // namespace Nodus
 
