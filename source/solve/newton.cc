@@ -68,10 +68,15 @@ namespace Nodus
              norms,
              SolverFailure::Kind::newton_limit);
 
+      // What Newton starts from, often the solution of a system before, is no measure of progress: statuses follow from
+      // the first correction on.
       const double now = residual(norms);
-      idle             = now < best || norms.changes < fewest ? 0 : idle + 1;
-      best             = std::min(best, now);
-      fewest           = std::min(fewest, norms.changes);
+      if (report.iterations > 0)
+      {
+        idle   = now < best || norms.changes < fewest ? 0 : idle + 1;
+        best   = std::min(best, now);
+        fewest = std::min(fewest, norms.changes);
+      }
       if (patience_ > 0 && idle >= patience_)
         fail("stalled: no progress in " + std::to_string(idle) + " iterations",
              norms,

@@ -1,5 +1,6 @@
 // Newton and the loop record alone, without physics: a 2 x 2 system x^2 + y^2 = 4, x y = 1 (solution
-// x = (sqrt 6 + sqrt 2)/2, y = 1/x) converges quadratically; failures throw; a step out of the domain is halved.
+// x = (sqrt 6 + sqrt 2)/2, y = 1/x) converges quadratically; failures throw; a step out of the domain is halved;
+// progress is measured from the first correction on.
 
 #include <nodus/solve/fixed_point_loop.h>
 #include <nodus/solve/newton.h>
@@ -50,6 +51,34 @@ namespace
     }
   };
 
+  /// Starts close to a solution, from where a change leads far away; residuals then fall by @p factor.
+  struct Returning : public NewtonProblem
+  {
+    double       factor;
+    unsigned int assembled = 0;
+    explicit Returning(const double f)
+        : factor(f)
+    {
+    }
+    Norms assemble() override
+    {
+      Norms norms;
+      norms.force   = assembled == 0 ? 1e-3 : std::pow(factor, assembled);
+      norms.changes = assembled == 0 ? 0 : 1;
+      if (norms.force < 1e-12)
+        norms.changes = 0;
+      ++assembled;
+      return norms;
+    }
+    unsigned int solve(BlockVector &, double) override
+    {
+      return 0;
+    }
+    void advance(double, const BlockVector &) override
+    {
+    }
+  };
+
   void none(unsigned int, const NewtonProblem::Norms &, unsigned int)
   {
   }
@@ -89,6 +118,18 @@ int main(int argc, char **argv)
   report = Newton(parameters).solve(narrow, none);
   std::cout << "inside the domain: " << (narrow.x > 1.9) << ", solution " << (std::abs(narrow.x - exact) < 1e-12)
             << std::endl;
+
+  for (const double factor : {0.05, 1.})
+    try
+    {
+      Returning returning(factor);
+      std::cout << "iterations with patience 2: " << Newton(parameters, 2).solve(returning, none).iterations
+                << std::endl;
+    }
+    catch (const SolverFailure &failure)
+    {
+      std::cout << failure.what() << std::endl;
+    }
 
   FixedPointLoop loop("status", {3, 0.});
   std::cout << "loop: " << loop.finished(2, "") << loop.finished(1, "") << " passes " << loop.counter() << std::endl;

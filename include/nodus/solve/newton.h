@@ -35,7 +35,7 @@ namespace Nodus
   {
   public:
     /// @p patience: iterations without progress after which it gives up, 0: never. Progress is a smaller residual or
-    /// fewer changes than in all iterations before.
+    /// fewer changes than in all iterations before; the start does not count.
     explicit Newton(const NewtonParameters &parameters, unsigned int patience = 0);
 
     struct Report
