@@ -1,0 +1,46 @@
+// A node of the slab hangs over the rim of the block, which is the master and is moved by hand. It gets a partner
+// within the projection tolerance and keeps it up to twice that, so that contact cannot push it to and fro across the
+// limit; beyond, or once partners are forgotten, it has none.
+
+#include "../contact_fixture.h"
+
+using namespace Cases;
+
+namespace
+{
+  /// Whether the node at (1, 2) has a partner when the block has moved by @p shift along x.
+  bool paired(ContactFixture &fixture, const double shift)
+  {
+    std::vector<Point> x = fixture.state.x;
+    std::vector<bool>  slave(x.size(), false);
+    for (const auto &node : fixture.surfaces->slave_nodes())
+      slave[node.node] = true;
+    for (unsigned int i = 0; i < x.size(); ++i)
+      if (!slave[i])
+        x[i][0] += shift;
+    fixture.pair_at(x);
+    for (unsigned int k = 0; k < fixture.surfaces->slave_nodes().size(); ++k)
+      if (fixture.surfaces->site_position(k).distance(Point(1, 2, 0)) < 1e-12)
+        return fixture.pairing[k].found;
+    return false;
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  // faces of the block: length 1; its rim is at x = 1 plus the overhang
+  ContactFixture fixture(
+      {box("slab", "4,4,1", {0, 0, -1}, {4, 4, 0}, 1, 0.3), box("block", "2,2,1", {1, 1, 0}, {3, 3, 1}, 1, 0.3)},
+      {pair(region(1, {z_plus}), region(2, {z_minus}))},
+      1);
+  const double tolerance = fixture.pairs[0].projection_tolerance;
+  fixture.pairing.forget_partners();
+  check("beyond the tolerance: none", !paired(fixture, 1.5 * tolerance));
+  check("within: one", paired(fixture, 0.9 * tolerance));
+  check("beyond again: kept", paired(fixture, 1.5 * tolerance));
+  check("beyond twice the tolerance: none", !paired(fixture, 2.1 * tolerance));
+  check("back: kept", paired(fixture, 1.9 * tolerance));
+  fixture.pairing.forget_partners();
+  check("forgotten: none", !paired(fixture, 1.5 * tolerance));
+}
