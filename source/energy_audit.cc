@@ -153,19 +153,28 @@ namespace Nodus
       console.remark("warning: friction creates energy at " + std::to_string(n_creating) + " sites, first " +
                      site_loci(creating, 1).front() +
                      ": its force does not oppose the slip there; see energy.csv, and try smaller increments");
-    const double imbalance = std::abs(increment.imbalance());
-    if (imbalance > large_imbalance * increment.throughput() && imbalance > small_part * energies.throughput())
+    const double imbalance  = std::abs(increment.imbalance());
+    const double motion     = std::max(largest_difference(solution.block(0), committed.block(0)), length_scale);
+    const double negligible = beyond_tolerance * parameters.newton.force_tolerance * force_scale * motion;
+    if (imbalance > large_imbalance * increment.throughput() && imbalance > small_part * energies.throughput() &&
+        imbalance > negligible)
     {
+      Energies before = energies;
+      before -= increment;
+      const bool         told = std::abs(before.imbalance()) > small_part * energies.throughput(); // it goes on
       std::ostringstream text;
-      text.precision(2);
-      text << "warning: " << 100. * imbalance / increment.throughput()
+      text.precision(3);
+      text << "warning: " << std::lround(100. * imbalance / increment.throughput())
            << " % of the energy of this increment is not accounted for (" << imbalance << " of "
            << increment.throughput();
       if (increment.stabilisation > 0.)
         text << ", and viscous stabilisation took " << increment.stabilisation;
-      text << "): contact, slip or yielding set in within it, where work with the mean force is not exact; the state at "
-              "its end is in equilibrium all the same, and if energies matter, half the increment leaves a half to a "
-              "quarter of it ('Load stepping/Increments')";
+      text << ')';
+      if (!told)
+        text
+            << ": contact, slip or yielding set in within it, where work with the mean force is not exact; the state "
+               "at its end is in equilibrium all the same, and if energies matter, half the increment leaves a half to "
+               "a quarter of it ('Load stepping/Increments')";
       console.remark(text.str());
     }
   }

@@ -18,6 +18,7 @@ namespace Nodus
   void ContactProblem::Implementation::follow_load_path()
   {
     const unsigned int first = path.increment();
+    std::vector<bool>  never_closed(surfaces->n_pairs(), true);
     console.begin_at(path.progress());
     while (!path.finished())
     {
@@ -64,6 +65,8 @@ namespace Nodus
         update_results();
         write(increment, path.finished());
       }
+      for (unsigned int p = 0; p < never_closed.size(); ++p)
+        never_closed[p] = never_closed[p] && resultants[p].slip + resultants[p].stick == 0;
       console.end_increment(counts, resultants, path.progress());
       if (callback)
         callback(increment, time);
@@ -74,6 +77,10 @@ namespace Nodus
       if (interval > 0 && increment % interval == 0)
         write_checkpoint();
     }
+    for (unsigned int p = 0; p < never_closed.size(); ++p)
+      if (never_closed[p] && first == 1)
+        console.remark("contact pair " + std::to_string(p + 1) + in_brackets(parameters.contact_pairs[p].name) +
+                       " was open at the end of every increment; --validate tells its gaps");
   }
 
   /// Closed sites that end the increment without a master point slid off the master surface, or went through it: that

@@ -1,6 +1,7 @@
 #include <nodus/contact/geometry_tangent.h>
 #include <nodus/contact/site_values.h>
 #include <nodus/contact_problem_implementation.h>
+#include <nodus/mesh/sides.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -25,7 +26,7 @@ namespace Nodus
   std::string coordinates(const Point &X)
   {
     std::ostringstream text;
-    text << "(" << X << ")";
+    text << "(" << without_round_off(X, 1e-6 * X.norm()) << ")";
     return text.str();
   }
 

@@ -273,6 +273,8 @@ namespace Nodus
       const double size = p.surfaces->face_size(pair);
       if (gaps.found > 0)
         text << ", gap " << gaps.smallest << " to " << gaps.largest << ", " << gaps.closed << " start closed";
+      else
+        text << "; are the boundary ids right, and is 'Search distance' large enough?";
       if (gaps.adjusted > 0)
         text << ", " << gaps.adjusted << " adjusted";
       p.console.line(name + ": " + describe(parameters.contact_pairs[pair]));

@@ -1,5 +1,6 @@
 #include <nodus/contact/rigid_motions.h>
 #include <nodus/mesh/region.h>
+#include <nodus/mesh/sides.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe_values.h>
@@ -48,7 +49,7 @@ namespace Nodus
     {
       std::ostringstream text;
       text.precision(3);
-      text << '(' << v << ')';
+      text << '(' << without_round_off(Point(v), v.norm()) << ')';
       return text.str();
     }
   } // namespace
