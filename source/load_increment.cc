@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 namespace Nodus
 {
@@ -74,7 +75,11 @@ namespace Nodus
         merged   = attempt->merged;
         singular = false;
         status->begin_increment();
-        pairing.forget_partners();
+        // closed sites have a partner, of which checkpoints know, too
+        std::vector<char> closed(status->size());
+        for (unsigned int s = 0; s < closed.size(); ++s)
+          closed[s] = status->contact(s) ? 1 : 0;
+        pairing.set_partnered(std::move(closed));
         diagnosis.begin_attempt(merged.names() + (attempt->approach ? "; friction grows" : ""));
         if (attempt->approach)
           approach_friction();

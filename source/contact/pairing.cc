@@ -10,7 +10,7 @@ namespace Nodus
     /// A relative motion is free when the unconstrained nodes carry at least this much of the jump's weight: a node on
     /// a symmetry plane that projects slightly inside still moves with the plane.
     constexpr double free_weight = 0.1;
-    /// Projection tolerance of sites that had a partner, over that of others.
+    /// Projection tolerance of sites that have a partner, over that of others.
     constexpr double partner_hysteresis = 2.;
 
     /// A SitePairing as sent to other ranks.
@@ -160,7 +160,7 @@ namespace Nodus
   {
     const Sites sites(surfaces, geometry);
     sites_.assign(surfaces.n_sites(), SitePairing());
-    had_partner_.resize(sites_.size(), 0);
+    partnered_.resize(sites_.size(), 0);
     using Normal = ContactPairParameters::Normal;
     for (unsigned int s = 0; s < sites_.size(); ++s)
     {
@@ -173,9 +173,9 @@ namespace Nodus
         rigid = geometry.closest_on_rigid(p, sites.x[s], sites.normal[s]);
       else
       {
-        const double tolerance = (had_partner_[s] ? partner_hysteresis : 1.) * pairs[p].projection_tolerance;
-        pairing.master = geometry.search[p].closest(sites.x[s], sites.normal[s], geometry.reach[p], tolerance);
-        had_partner_[s] = had_partner_[s] || pairing.master.found();
+        const double tolerance = (partnered_[s] ? partner_hysteresis : 1.) * pairs[p].projection_tolerance;
+        pairing.master         = geometry.search[p].closest(sites.x[s], sites.normal[s], geometry.reach[p], tolerance);
+        partnered_[s]          = pairing.master.found();
       }
       const bool averages = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
       const bool paired   = averages ? averaged.covered(s) : pairing.master.found() || rigid.found;

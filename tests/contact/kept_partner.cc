@@ -1,6 +1,6 @@
 // A node of the slab hangs over the rim of the block, which is the master and is moved by hand. It gets a partner
 // within the projection tolerance and keeps it up to twice that, so that contact cannot push it to and fro across the
-// limit; beyond, or once partners are forgotten, it has none.
+// limit.
 
 #include "../contact_fixture.h"
 
@@ -35,12 +35,12 @@ int main(int argc, char **argv)
       {pair(region(1, {z_plus}), region(2, {z_minus}))},
       1);
   const double tolerance = fixture.pairs[0].projection_tolerance;
-  fixture.pairing.forget_partners();
+  fixture.pairing.set_partnered({});
   check("beyond the tolerance: none", !paired(fixture, 1.5 * tolerance));
   check("within: one", paired(fixture, 0.9 * tolerance));
   check("beyond again: kept", paired(fixture, 1.5 * tolerance));
   check("beyond twice the tolerance: none", !paired(fixture, 2.1 * tolerance));
-  check("back: kept", paired(fixture, 1.9 * tolerance));
-  fixture.pairing.forget_partners();
-  check("forgotten: none", !paired(fixture, 1.5 * tolerance));
+  check("back: none", !paired(fixture, 1.5 * tolerance));
+  fixture.pairing.set_partnered(std::vector<char>(fixture.surfaces->n_sites(), 1));
+  check("with a partner from before: kept", paired(fixture, 1.5 * tolerance));
 }

@@ -7,6 +7,7 @@
 #include <nodus/parameters.h>
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace Nodus
@@ -30,24 +31,23 @@ namespace Nodus
     /// averaged scheme have a partner where @p averaged covers them. Each rank projects the sites it owns and
     /// passes their frames on; a ghost has its master point where the face is here. Collective.
     ///
-    /// A site that a projection since forget_partners() has found a partner for keeps it up to twice the projection
-    /// tolerance: where contact itself moves a node across the limit, there would be no solution otherwise.
+    /// A site that has a partner keeps it up to twice the projection tolerance: where contact itself moves a node
+    /// across the limit, there would be no solution otherwise.
     void project(const std::vector<ContactPairParameters> &pairs,
                  const ContactSurfaces                    &surfaces,
                  const ContactGeometry                    &geometry,
                  const AveragedJump                       &averaged);
 
-    /// The next projection takes the tolerance as it is, for all sites.
-    void forget_partners()
+    /// Which sites have a partner before the next projection; without this, those that the last one found one for.
+    void set_partnered(std::vector<char> partnered)
     {
-      had_partner_.clear();
+      partnered_ = std::move(partnered);
     }
 
     /// Sites of which only the tangents are known, from a checkpoint.
     void set_tangents(const std::vector<std::array<Vector3, 2>> &tangents)
     {
       sites_.assign(tangents.size(), SitePairing());
-      forget_partners();
       for (unsigned int s = 0; s < tangents.size(); ++s)
         sites_[s].tangent = tangents[s];
     }
@@ -65,7 +65,7 @@ namespace Nodus
     void share(const ContactSurfaces &surfaces);
 
     std::vector<SitePairing> sites_;
-    std::vector<char>        had_partner_; ///< of the owned sites, since forget_partners()
+    std::vector<char>        partnered_; ///< of the owned sites
   };
 } // namespace Nodus
 
