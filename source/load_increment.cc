@@ -34,7 +34,8 @@ namespace Nodus
   }
 
   /// The loops as the parameters ask for them; where a merged iteration fails, once more with the geometry as a loop,
-  /// then, with friction, from a first iterate that growing friction leads to, and at last with all three as loops. In
+  /// then, with friction, from a first iterate that growing friction leads to, then with geometry and statuses as loops
+  /// around thresholds that follow the pressure, which frozen ones need not contract to, and at last with all three. In
   /// each of these attempts laws hold in the mean from where statuses cycle, if sites share multipliers
   /// (Status::hold_in_the_mean). Where thresholds were to be a loop and that fails, they follow the pressure.
   void ContactProblem::Implementation::solve_increment()
@@ -64,6 +65,8 @@ namespace Nodus
       attempts.push_back({inner, false, "a geometry loop"});
     if (slides && asked.status && time != path.time()) // on a new mesh friction is there already
       attempts.push_back({inner, true, "a geometry loop and growing friction"});
+    if (asked.threshold && asked.status)
+      attempts.push_back({{false, true, false}, false, "geometry and status loops"});
     if (asked.any())
       attempts.push_back({MergedLoops(), false, "three loops"});
     if (parameters.threshold_loop.mode != LoopParameters::Mode::newton && status->threshold_follows_pressure())
