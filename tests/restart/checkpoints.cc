@@ -122,13 +122,11 @@ int main(int argc, char **argv)
     setrlimit(RLIMIT_FSIZE, &small);
     const std::string message = restart(fields);
     setrlimit(RLIMIT_FSIZE, &limit);
-    expect("a disk that is full before", message, {"cannot write", "bodies_0001.vtu", "is the disk full?"});
+    expect("a disk that is full before", message, {"cannot write", "bodies_0000.vtu", "is the disk full?"});
     std::vector<std::string> left;
     for (const auto &entry : fs::directory_iterator(folder / "full"))
       left.push_back(entry.path().filename());
-    std::sort(left.begin(), left.end());
-    check("  leaves complete files",
-          left == std::vector<std::string>({"contact.csv", "convergence.csv", "energy.csv", "reactions.csv"}));
+    check("  leaves no incomplete file", left.empty());
   }
 
   put(kept, checkpoints);
