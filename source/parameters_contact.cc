@@ -282,7 +282,9 @@ namespace Nodus
                       not_negative);
     prm.add_parameter("Projection tolerance",
                       pair.projection_tolerance,
-                      "How far a projection may hang over the rim of the master surface [face sizes].",
+                      "How far a projection may hang over the rim of the master surface [face sizes]. A site that is "
+                      "closed keeps its "
+                      "partner up to twice that.",
                       not_negative);
     add_choice(prm,
                "Initial status",

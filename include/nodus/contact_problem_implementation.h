@@ -47,9 +47,10 @@ namespace Nodus
   using SiteState = std::array<double, std::tuple_size<Status::Record>::value + 2 * dim>;
 
   /// Everything a run owns. contact_problem.cc builds it and reports, load_path.cc goes from increment to increment,
-  /// load_increment.cc holds the three nested loops, approach_friction.cc a way to a first iterate, newton_iterate.cc
-  /// what Newton sees, restart.cc the checkpoints, failed_state.cc what is kept of an increment that fails, adapt.cc
-  /// changes the mesh, rigid_motion.cc lets forces drive rigid bodies.
+  /// load_increment.cc holds the three nested loops, approach_friction.cc a way to a first iterate, pair_surfaces.cc
+  /// the geometry passes, newton_iterate.cc what Newton sees, restart.cc the checkpoints, failed_state.cc what is kept
+  /// of an increment that fails, free_motion.cc knows what nothing holds, adapt.cc changes the mesh, rigid_motion.cc
+  /// lets forces drive rigid bodies.
   struct ContactProblem::Implementation : public NewtonProblem
   {
     Implementation(const Parameters &parameters, MPI_Comm communicator, std::ostream &log);
