@@ -12,10 +12,14 @@ namespace Nodus
   {
     /// Largest shift of a mean master point, in sizes of the surface of its slave node: of sites far from contact.
     constexpr double largest_shift = 0.1;
+    /// Mean square distance of the master nodes, over the surface of the slave node, at which their mean is not moved, and
+    /// from which on it is in full.
+    constexpr double no_spread = 1e-3, full_spread = 1e-2;
 
     /// Averaged gaps vanish in the mean alone: gaps that are left between the points, on masters that are not flat, put
     /// the mean master point beside the normal through the slave node, and forces along that would turn the bodies. The
-    /// least change of the master weights that puts it on the normal; the distance along it stays.
+    /// least change of the master weights, relative to these, that puts it on the normal; the distance along it stays.
+    /// Nodes that come in with a weight of zero so change nothing at once.
     void balance_moment(const SitePairing         &site,
                         const double               size,
                         const std::vector<Point>  &x,
@@ -25,26 +29,39 @@ namespace Nodus
                         Vector3                   &offset)
     {
       Vector3 beside, mean;
+      double  sum = 0.;
       for (const AveragedJump::Entry *e = first; e != last; ++e)
         beside += e->weight * x[e->node];
       for (const AveragedJump::Entry *e = master; e != last; ++e)
-        mean += x[e->node] / static_cast<double>(last - master);
+      {
+        mean += std::abs(e->weight) * x[e->node];
+        sum += std::abs(e->weight);
+      }
+      mean /= sum;
       const auto components = [&](const Vector3 &v)
       { return Eigen::Vector2d(v * site.tangent[0], v * site.tangent[1]); };
       Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
       for (const AveragedJump::Entry *e = master; e != last; ++e)
       {
         const Eigen::Vector2d d = components(x[e->node] - mean);
-        spread += d * d.transpose();
+        spread += std::abs(e->weight) * d * d.transpose();
       }
-      if (!(spread.determinant() > 1e-6 * spread.trace() * spread.trace()))
-        return; // nodes in a line
       Eigen::Vector2d shift = components(beside);
       shift *= std::min(1., largest_shift * size / std::max(shift.norm(), std::numeric_limits<double>::min()));
-      shift = spread.inverse() * shift;
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
+      Eigen::Vector2d                                      slope = Eigen::Vector2d::Zero();
+      for (unsigned int i = 0; i < 2; ++i)
+      {
+        const double part = axes.eigenvalues()[i] / (sum * size * size);
+        if (!(part > no_spread))
+          continue; // nodes in a line across it
+        const double t = std::min(1., (part - no_spread) / (full_spread - no_spread));
+        slope += t * t * (3. - 2. * t) / axes.eigenvalues()[i] * axes.eigenvectors().col(i).dot(shift) *
+                 axes.eigenvectors().col(i);
+      }
       for (AveragedJump::Entry *e = master; e != last; ++e)
       {
-        const double change = -components(x[e->node] - mean).dot(shift);
+        const double change = -std::abs(e->weight) * components(x[e->node] - mean).dot(slope);
         e->weight += change;
         offset -= change * (x[e->node] * site.normal) * site.normal;
       }
