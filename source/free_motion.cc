@@ -13,7 +13,7 @@ namespace Nodus
   namespace
   {
     /// Stiffness of the springs that are proposed, relative to the modulus of the body over its size.
-    constexpr double soft = 1e-4;
+    constexpr double soft = 1e-3;
   } // namespace
 
   /// Rigid motions that nothing holds now, or would if all sites with a master point were closed. Collective.

@@ -19,8 +19,11 @@ TIGHT = {
     "Newton/Maximum iterations": "40",
     "Newton/Largest forcing term": "0",
     "Linear solver/Tolerance": "1e-13",
+    "Geometry loop/Tolerance": "1e-9",
     "Output/Write VTU": "false",
 }
+# What is out of reach of residuals: forces of the slender beams are small beside stiffness times displacement.
+ATTAINABLE = {"cantilevers": {"Linear solver/Tolerance": "1e-9"}}
 MODES = {f"{loop} loop/Mode": "newton" for loop in ("Geometry", "Threshold", "Status")}
 # Columns of one scale each; the numbers of nodes are compared exactly.
 GROUPS = {
@@ -42,6 +45,12 @@ the block solver fall back in two of 50 increments, as the direct one does.
 """
 
 
+def common_times(rows, reference):
+    """Pairs of rows of the same pair and time: cut-backs add some."""
+    known = {(row["pair"], row["time"]): row for row in reference}
+    return [(row, known[row["pair"], row["time"]]) for row in rows if (row["pair"], row["time"]) in known]
+
+
 def difference(rows, reference):
     """Largest difference of the columns in all increments, relative to the largest value of their group; forces and
     moments may cancel in the sum and are relative to pressure times area, and times its edge, where those are larger."""
@@ -50,7 +59,7 @@ def difference(rows, reference):
     least = {"force": load, "moment": load * max(row["contact area"] for row in reference) ** 0.5}
     for group, columns in GROUPS.items():
         scale = max([least.get(group, 0.0)] + [abs(row[c]) for row in reference for c in columns])
-        for row, other in zip(rows, reference):
+        for row, other in common_times(rows, reference):
             for c in columns:
                 worst = max(worst, abs(row[c] - other[c]) / scale if scale > 0.0 else 0.0)
     return worst
@@ -60,7 +69,7 @@ def rows_of(case):
     table, reference = [], None
     for solver in SOLVERS:
         prm = os.path.join(common.ROOT, "prm", case + ".prm")
-        run = common.run(prm, f"solvers_{case}_{solver}", {**MODES, **TIGHT, "Linear solver/Type": solver})
+        run = common.run(prm, f"solvers_{case}_{solver}", {**MODES, **TIGHT, **ATTAINABLE.get(case, {}), "Linear solver/Type": solver})
         if not run.converged:
             table.append([case, solver, "stops", "", "", "", f"{run.cpu:.1f}"])
             continue
@@ -72,7 +81,7 @@ def rows_of(case):
             solver,
             "" if rows is reference else f"{difference(rows, reference):.0e}",
             "" if rows is reference else
-            "yes" if all(a[c] == b[c] for a, b in zip(rows, reference) for c in STATUSES) else "no",
+            "yes" if all(a[c] == b[c] for a, b in common_times(rows, reference) for c in STATUSES) else "no",
             int(sum(row["fallbacks"] for row in counts)),
             int(sum(row["Newton iterations"] for row in counts)),
             f"{run.cpu:.1f}",
