@@ -12,8 +12,8 @@ namespace Nodus
   {
     /// Largest shift of a mean master point, in sizes of the surface of its slave node: of sites far from contact.
     constexpr double largest_shift = 0.1;
-    /// Mean square distance of the master nodes, over the surface of the slave node, at which their mean is not moved, and
-    /// from which on it is in full.
+    /// Mean square distance of the master nodes, over the surface of the slave node, at which their mean is not moved,
+    /// and from which on it is in full.
     constexpr double no_spread = 1e-3, full_spread = 1e-2;
 
     /// Averaged gaps vanish in the mean alone: gaps that are left between the points, on masters that are not flat, put
