@@ -8,7 +8,7 @@
 // - One without resistance in a direction: named.
 // On any number of ranks.
 
-#include "../cases.h"
+#include "driven_body.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -129,17 +129,6 @@ namespace
       check("  after a warning", text.str().find("body 2 (plate) moves along (1 0 0)") != std::string::npos);
   }
 
-  /// Moment about @p centre of a force and its moment about the origin.
-  Vector3 moment_about(const Point &centre, const Vector3 &moment, const Vector3 &force)
-  {
-    return moment - dealii::cross_product_3d(Vector3(centre), force);
-  }
-
-  void compare(const std::string &name, const Vector3 &value, const Vector3 &reference, const double tolerance)
-  {
-    check(name, (value - reference).norm(), 0., tolerance, reference.norm());
-  }
-
   /// The beam turns by M H/(E I); that the force is eccentric on the bent beam changes this by F H^2/(E I) = 0.0012.
   void check_eccentric(const bool loops)
   {
@@ -182,33 +171,6 @@ namespace
     check("  moment", moment_about(centre, same.master_moment, same.master_force)[1], -moment, 1e-8);
   }
 
-  /// Force residuals of the first geometry pass of the last increment square from one iteration to the next.
-  bool is_quadratic()
-  {
-    MPI_Barrier(world());
-    std::ifstream       stream(folder + "/convergence.csv");
-    std::vector<double> residuals;
-    double              increment = 0.;
-    std::string         line;
-    std::getline(stream, line);
-    while (std::getline(stream, line))
-    {
-      std::vector<double> row;
-      std::istringstream  cells(line);
-      for (std::string cell; std::getline(cells, cell, ',');)
-        row.push_back(std::stod(cell));
-      if (row[0] != increment)
-        residuals.clear();
-      increment = row[0];
-      if (row[3] == 1.)
-        residuals.push_back(row[7]);
-    }
-    bool quadratic = residuals.size() > 3;
-    for (unsigned int i = 2; i < residuals.size(); ++i) // the first correction takes up the load
-      quadratic = quadratic && residuals[i] < 10. * residuals[i - 1] * residuals[i - 1] + 1e-11;
-    return quadratic;
-  }
-
   void check_finite_rotation(const unsigned int degree, const Solver solver, const bool loops)
   {
     Parameters p                   = cube_and_plate(degree, 0.3);
@@ -236,19 +198,8 @@ namespace
     q.bodies[1].motion.rotation_centre = {0.5, 0.4, 1.};
     q.bodies[1].rigid_free             = {0, 1, 2, 3, 4, 5};
     q.linear_solver.type               = solver;
-    const auto ramp                    = [](const Vector3 &v)
-    {
-      std::vector<std::string> expressions;
-      for (unsigned int c = 0; c < dim; ++c)
-      {
-        std::ostringstream expression;
-        expression << std::setprecision(17) << v[c] << "*t";
-        expressions.push_back(expression.str());
-      }
-      return expressions;
-    };
-    q.bodies[1].rigid_force  = ramp(force);
-    q.bodies[1].rigid_moment = ramp(moment);
+    q.bodies[1].rigid_force            = ramp(force);
+    q.bodies[1].rigid_moment           = ramp(moment);
     ContactProblem problem(q, world(), log());
     problem.run();
     const RigidBodyMotion found = problem.rigid_bodies()[0];
@@ -271,7 +222,7 @@ namespace
             moment,
             1e-9);
     if (loops)
-      check("  converges quadratically", is_quadratic());
+      check("  converges quadratically", is_quadratic(folder));
     const std::vector<double> energy = last_row("energy.csv", 0);
     check("  energy that is not accounted for", std::abs(energy[9]) < 0.02 * energy[2]);
   }

@@ -113,20 +113,44 @@ int main(int argc, char **argv)
   }
 
   {
+    // The same from the first file on, and from that of the first increment on, which is larger than the initial state.
     auto fields                  = p;
     fields.output.write_vtu      = true;
     fields.output.results_folder = folder / "full";
-    rlimit limit;
-    getrlimit(RLIMIT_FSIZE, &limit);
-    const rlimit small{2000, limit.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &small);
-    const std::string message = restart(fields);
-    setrlimit(RLIMIT_FSIZE, &limit);
-    expect("a disk that is full before", message, {"cannot write", "bodies_0000.vtu", "is the disk full?"});
-    std::vector<std::string> left;
-    for (const auto &entry : fs::directory_iterator(folder / "full"))
-      left.push_back(entry.path().filename());
-    check("  leaves no incomplete file", left.empty());
+    const auto size              = [&](const std::string &name) { return fs::file_size(folder / "full" / name); };
+    const auto run_full          = [&](const std::uintmax_t largest)
+    {
+      fs::remove_all(folder / "full");
+      rlimit limit;
+      getrlimit(RLIMIT_FSIZE, &limit);
+      const rlimit small{largest, limit.rlim_max};
+      setrlimit(RLIMIT_FSIZE, &small);
+      const std::string message = restart(fields);
+      setrlimit(RLIMIT_FSIZE, &limit);
+      return message;
+    };
+    const auto left = [&]
+    {
+      std::vector<std::string> names;
+      for (const auto &entry : fs::directory_iterator(folder / "full"))
+        names.push_back(entry.path().filename());
+      std::sort(names.begin(), names.end());
+      return names;
+    };
+    restart(fields);
+    const auto between = (size("bodies_0000.vtu") + size("bodies_0001.vtu")) / 2;
+    expect("a disk that is full before", run_full(2000), {"cannot write", "bodies_0000.vtu", "is the disk full?"});
+    check("  leaves no incomplete file", left().empty());
+    expect("one that fills later", run_full(between), {"cannot write", "bodies_0001.vtu", "is the disk full?"});
+    check("  leaves complete files",
+          left() == std::vector<std::string>({"bodies.pvd",
+                                              "bodies_0000.vtu",
+                                              "contact.csv",
+                                              "contact.pvd",
+                                              "contact_0000.vtu",
+                                              "convergence.csv",
+                                              "energy.csv",
+                                              "reactions.csv"}));
   }
 
   put(kept, checkpoints);

@@ -22,7 +22,7 @@ NODUS = os.environ.get("NODUS", os.path.join(ROOT, "build-release", "nodus"))
 SCRATCH = os.environ.get("NODUS_STUDIES", os.path.join(ROOT, "results", "studies"))
 CASE = os.path.join(ROOT, "prm", "sliding_blocks.prm")
 # Small and in many increments: what counts here is how often it is interrupted.
-OVERRIDES = ["Load stepping/Increments=60,120", "Output/Checkpoint interval=3", "Output/VTU interval=5"]
+OVERRIDES = ["Load stepping/Increments=240,480", "Output/Checkpoint interval=3", "Output/VTU interval=5"]
 COARSE = ["Body 1/Generator arguments=3,3,2 : 0,0.25,0 : 1,1.25,0.5 : true",
           "Body 2/Generator arguments=8,4,2 : -1,0,-0.5 : 2,1.5,0 : true"]
 
