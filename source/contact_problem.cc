@@ -1,6 +1,7 @@
 #include <nodus/bulk/rigid_material.h>
 #include <nodus/contact/tractions.h>
 #include <nodus/contact_problem_implementation.h>
+#include <nodus/memory.h>
 #include <nodus/output/complete_file.h>
 #include <nodus/signals.h>
 
@@ -136,6 +137,7 @@ namespace Nodus
         make_linear_solver(linear_solver_parameters, surfaces->layout(), OwnedNodes(dof_handler, *mapping).X);
     linear_solver->set_profile(&profile);
     direct_solver.reset();
+    give_back_memory();
     if (!parameters.output.write_vtu)
       return;
     const VtuOutput::Series series = vtu ? vtu->series() : VtuOutput::Series();

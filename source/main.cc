@@ -1,4 +1,5 @@
 #include <nodus/contact_problem.h>
+#include <nodus/memory.h>
 #include <nodus/parameters.h>
 #include <nodus/signals.h>
 
@@ -155,6 +156,7 @@ int main(int argc, char **argv)
 {
   // One thread per rank: parallelism is MPI's, and sums do not depend on scheduling.
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  Nodus::give_back_memory();
   const bool                               first_rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   try
   {

@@ -37,10 +37,9 @@ namespace Nodus
         kernel = ElementKernel::make(fe, treatment);
       kernels.push_back(kernel);
     }
-    FEValues<dim> volume(mapping, fe, QGauss<dim>(fe.degree + 1), update_inverse_jacobians | update_JxW_values);
-    n_q = volume.n_quadrature_points;
+    n_q = QGauss<dim>(fe.degree + 1).size();
     cell_u.resize(fe.n_dofs_per_cell());
-    for (auto *v : {&batch_u, &batch_u_before, &batch_force})
+    for (auto *v : {&batch_X, &batch_u, &batch_u_before, &batch_force})
       v->resize(fe.n_dofs_per_cell());
     batch_stiffness.resize(n_nodes * (n_nodes + 1) / 2 * dim * dim);
     for (auto *v : {&cell_internal, &cell_external})
@@ -52,7 +51,6 @@ namespace Nodus
     const std::size_t     n_cells = dof_handler.get_triangulation().n_active_cells();
     // the largest arrays: growing them would take twice their memory
     number_of.resize(n_cells, numbers::invalid_unsigned_int);
-    geometry.reserve(n_q * (n_cells / n_lanes + materials.size()));
     global_nodes.reserve(n_nodes * n_cells);
     for (const auto &cell : dof_handler.active_cell_iterators())
     {
@@ -78,22 +76,9 @@ namespace Nodus
       if (batches.empty() || batches.back().size == n_lanes || cells.back().body != cell->material_id())
       {
         batches.push_back({static_cast<unsigned int>(cells.size()), 0, committed.size()});
-        geometry.resize(geometry.size() + n_q);
         add_initial_states(*materials[cell->material_id()]);
       }
-      const unsigned int lane = batches.back().size++;
-      volume.reinit(cell);
-      for (unsigned int q = 0; q < n_q; ++q)
-      {
-        ElementKernel::QuadraturePoint &point = geometry[geometry.size() - n_q + q];
-        for (unsigned int v = lane; v < n_lanes; ++v)
-        {
-          for (unsigned int e = 0; e < dim; ++e)
-            for (unsigned int J = 0; J < dim; ++J)
-              point.inverse_jacobian[e][J][v] = volume.inverse_jacobian(q)[e][J];
-          point.JxW[v] = volume.JxW(q);
-        }
-      }
+      ++batches.back().size;
       cells.push_back({cell->center(), static_cast<unsigned char>(cell->material_id()), cell->is_locally_owned()});
       number_of[cell->active_cell_index()] = cells.size() - 1;
       loads.add_cell(cell);
@@ -109,10 +94,26 @@ namespace Nodus
     cell_nodes.reserve(global_nodes.size());
     for (const DoFIndex node : global_nodes)
       cell_nodes.push_back(nodes->local(node));
-    for (auto *v : {&nodal_u, &nodal_u_before, &nodal_internal, &nodal_external, &nodal_rhs, &prescribed})
+    for (auto *v : {&nodal_X, &nodal_u, &nodal_internal, &nodal_external, &nodal_rhs, &prescribed})
       v->resize(dofs.size());
     is_prescribed.resize(dofs.size());
     current = committed;
+    find_positions(mapping);
+  }
+
+  /// Where the mapping puts the nodes: with it the element of the displacement maps the cell in the same way.
+  void SolidAssembler::Scratch::find_positions(const Mapping<dim> &mapping)
+  {
+    const auto   &fe = dof_handler.get_fe();
+    FEValues<dim> support(mapping, fe, fe.base_element(0).get_unit_support_points(), update_quadrature_points);
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (const unsigned int c = number_of[cell->active_cell_index()]; c != numbers::invalid_unsigned_int)
+      {
+        support.reinit(cell);
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          for (unsigned int i = 0; i < dim; ++i)
+            nodal_X[dim * cell_nodes[c * n_nodes + a] + i] = support.quadrature_point(a)[i];
+      }
   }
 
   void SolidAssembler::Scratch::add_initial_states(const Material &material)
@@ -124,9 +125,9 @@ namespace Nodus
         committed.push_back(Lanes{} + value);
   }
 
-  void SolidAssembler::Scratch::get_displacement(const Batch               &batch,
-                                                 const std::vector<double> &nodal,
-                                                 std::vector<Lanes>        &values) const
+  void SolidAssembler::Scratch::gather(const Batch               &batch,
+                                       const std::vector<double> &nodal,
+                                       std::vector<Lanes>        &values) const
   {
     for (unsigned int v = 0; v < n_lanes; ++v)
     {
@@ -280,17 +281,18 @@ namespace Nodus
   }
 
   /// No force; on the rows of the nodes, which are prescribed, a diagonal of the size of the others.
-  void SolidAssembler::Scratch::integrate_rigid(const unsigned int n, Lanes &det_F)
+  void SolidAssembler::Scratch::integrate_rigid(const Batch &batch, Lanes &det_F)
   {
     det_F = Lanes{} + 1.;
     std::fill(batch_force.begin(), batch_force.end(), Lanes{});
     std::fill(batch_stiffness.begin(), batch_stiffness.end(), Lanes{});
-    for (unsigned int v = 0; v < batches[n].size; ++v)
+    const ElementKernel::QuadraturePoint *const points = this->points(batch);
+    for (unsigned int v = 0; v < batch.size; ++v)
     {
       double volume = 0.;
       for (unsigned int q = 0; q < n_q; ++q)
-        volume += geometry[n * n_q + q].JxW[v];
-      const double diagonal = material(batches[n]).youngs_modulus() * std::cbrt(volume) / n_nodes;
+        volume += points[q].JxW[v];
+      const double diagonal = material(batch).youngs_modulus() * std::cbrt(volume) / n_nodes;
       for (unsigned int a = 0; a < n_nodes; ++a)
         for (unsigned int i = 0; i < dim; ++i)
           entry(a, i, a, i, v) = diagonal;
@@ -304,17 +306,16 @@ namespace Nodus
                                         const AffineConstraints<double> *constraints,
                                         NodeMatrix                      *tangent)
   {
-    std::vector<double> values(dofs.size());
+    std::vector<double> values(dofs.size()), conditions(1, t);
     u.extract_subvector_to(dofs.begin(), dofs.end(), values.begin());
-    values.push_back(t);
     if (constraints)
       for (const auto &line : constraints->get_lines())
-        values.push_back(line.inhomogeneity);
-    const bool same = tangent && tangent == last_tangent && values == last_values;
+        conditions.push_back(line.inhomogeneity);
+    const bool same = tangent && tangent == last_tangent && values == nodal_u && conditions == last_conditions;
     if (Utilities::MPI::min(same ? 1 : 0, dof_handler.get_communicator()) == 1)
       return true;
-    std::copy_n(values.begin(), nodal_u.size(), nodal_u.begin());
-    last_values.swap(values);
+    nodal_u.swap(values);
+    last_conditions.swap(conditions);
     last_tangent = tangent;
     return false;
   }
@@ -354,17 +355,17 @@ namespace Nodus
     for (unsigned int n = 0; n < batches.size() && failure.empty(); ++n)
     {
       const Batch &batch = batches[n];
-      get_displacement(batch, nodal_u, batch_u);
+      gather(batch, nodal_u, batch_u);
       const bool goes_on = tangent && iterates > 0 && kernel(batch).has_own_unknowns();
       if (goes_on)
-        get_displacement(batch, nodal_u_before, batch_u_before);
+        gather(batch, nodal_u_before, batch_u_before);
       if (tangent)
         prefetch(batch, *tangent);
       Lanes det_F;
       if (material(batch).is_rigid())
-        integrate_rigid(n, det_F);
+        integrate_rigid(batch, det_F);
       else
-        kernel(batch).integrate(&geometry[n * n_q],
+        kernel(batch).integrate(points(batch),
                                 material(batch),
                                 batch_u.data(),
                                 goes_on ? batch_u_before.data() : nullptr,
@@ -413,7 +414,8 @@ namespace Nodus
     else if (tangent)
     {
       ++iterates;
-      nodal_u_before = nodal_u;
+      if (std::any_of(kernels.begin(), kernels.end(), [](const auto &kernel) { return kernel->has_own_unknowns(); }))
+        nodal_u_before = nodal_u;
     }
     throw_everywhere<SolverFailure>(failure, dof_handler.get_communicator(), SolverFailure::Kind::inverted_cell);
   }

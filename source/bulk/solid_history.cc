@@ -123,8 +123,9 @@ namespace Nodus
       const auto         &batch    = s.batches[n];
       const Material     &material = s.material(batch);
       std::vector<double> state(material.n_state());
-      s.get_displacement(batch, nodal_u, s.batch_u);
-      s.kernel(batch).deformation(&s.geometry[n * s.n_q], material.small_strain(), s.batch_u.data(), F.data());
+      s.gather(batch, nodal_u, s.batch_u);
+      const ElementKernel::QuadraturePoint *const geometry = s.points(batch);
+      s.kernel(batch).deformation(geometry, material.small_strain(), s.batch_u.data(), F.data());
       for (unsigned int v = 0; v < batch.size; ++v)
       {
         if (!s.cells[batch.first + v].owned)
@@ -141,7 +142,7 @@ namespace Nodus
                        material.equivalent_plastic_strain(state.data()),
                        material.stored_energy(F_point, state.data()),
                        material.dissipation(state.data()),
-                       s.geometry[n * s.n_q + q].JxW[v]};
+                       geometry[q].JxW[v]};
         }
         while (s.number_of[cell->active_cell_index()] != batch.first + v)
           ++cell;

@@ -317,9 +317,8 @@ namespace Nodus
     for (unsigned int n = 0; n < rhs.size(); ++n)
     {
       const BlockVector b = scaled(*rhs[n]);
-      BlockVector       x, r;
+      BlockVector       x;
       x.reinit(b);
-      r.reinit(b);
       const double norm_b = b.l2_norm();
       if (!std::isfinite(norm_b))
         throw SolverFailure(solver + ": the right-hand side holds a value that is not finite.",
@@ -327,6 +326,8 @@ namespace Nodus
       if (norm_b > 0.)
       {
         report.iterations += iterate(b, x);
+        BlockVector r;
+        r.reinit(b);
         vmult(r, x);
         r.sadd(-1., 1., b);
         if (n == 0)

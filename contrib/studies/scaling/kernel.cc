@@ -93,33 +93,26 @@ namespace
   {
   public:
     explicit Elements(const Problem &problem)
-        : n_q_(dealii::Utilities::pow(problem.fe.degree + 1, dim))
-        , u_(problem.plain_u)
+        : u_(problem.plain_u)
+        , X_(u_.size())
         , kernel_(ElementKernel::make(problem.fe, BodyParameters::VolumetricTreatment::standard))
-        , batch_u_(problem.fe.n_dofs_per_cell())
+        , batch_X_(problem.fe.n_dofs_per_cell())
+        , batch_u_(batch_X_.size())
         , force(batch_u_.size())
         , stiffness(batch_u_.size() * (batch_u_.size() + dim) / 2)
     {
       dealii::FEValues<dim> values(problem.mapping,
                                    problem.fe,
-                                   dealii::QGauss<dim>(problem.fe.degree + 1),
-                                   dealii::update_inverse_jacobians | dealii::update_JxW_values);
+                                   problem.fe.base_element(0).get_unit_support_points(),
+                                   dealii::update_quadrature_points);
       std::vector<DoFIndex> dofs(batch_u_.size());
       n_batches = problem.triangulation.n_active_cells() / n_lanes;
-      geometry_.resize(n_batches * n_q_);
       for (const auto &cell : problem.dof_handler.active_cell_iterators())
       {
-        const unsigned int c = cell->active_cell_index(), lane = c % n_lanes;
         values.reinit(cell);
         cell->get_dof_indices(dofs);
-        for (unsigned int q = 0; q < n_q_; ++q)
-        {
-          auto &point = geometry_[c / n_lanes * n_q_ + q];
-          for (unsigned int e = 0; e < dim; ++e)
-            for (unsigned int J = 0; J < dim; ++J)
-              point.inverse_jacobian[e][J][lane] = values.inverse_jacobian(q)[e][J];
-          point.JxW[lane] = values.JxW(q);
-        }
+        for (unsigned int i = 0; i < dofs.size(); ++i)
+          X_[dofs[i]] = values.quadrature_point(i / dim)[i % dim];
         dofs_.insert(dofs_.end(), dofs.begin(), dofs.end());
       }
     }
@@ -129,10 +122,19 @@ namespace
       const unsigned int *dof = dofs_.data() + n * n_lanes * batch_u_.size();
       for (unsigned int v = 0; v < n_lanes; ++v)
         for (unsigned int i = 0; i < batch_u_.size(); ++i, ++dof)
+        {
+          batch_X_[i][v] = X_[*dof];
           batch_u_[i][v] = u_(*dof);
+        }
       Lanes det_F;
-      kernel_->integrate(
-          &geometry_[n * n_q_], material, batch_u_.data(), nullptr, {}, force.data(), stiffness.data(), det_F);
+      kernel_->integrate(kernel_->points(batch_X_.data()),
+                         material,
+                         batch_u_.data(),
+                         nullptr,
+                         {},
+                         force.data(),
+                         stiffness.data(),
+                         det_F);
     }
 
     /// Entry of the stiffness of the cell in a lane, i and j in the order of the element's degrees of freedom.
@@ -147,12 +149,11 @@ namespace
     unsigned int n_batches;
 
   private:
-    unsigned int                                n_q_;
-    const dealii::Vector<double>               &u_;
-    std::unique_ptr<ElementKernel>              kernel_;
-    std::vector<ElementKernel::QuadraturePoint> geometry_;
-    std::vector<unsigned int>                   dofs_;
-    std::vector<Lanes>                          batch_u_;
+    const dealii::Vector<double>  &u_;
+    std::vector<double>            X_; ///< positions of the nodes, by degree of freedom
+    std::unique_ptr<ElementKernel> kernel_;
+    std::vector<unsigned int>      dofs_;
+    std::vector<Lanes>             batch_X_, batch_u_;
 
   public:
     std::vector<Lanes> force, stiffness;
@@ -197,11 +198,12 @@ namespace
   /// Additions and multiplications of HexKernel for n nodes and points.
   double flops(const Named &law, const double n)
   {
-    const bool   small     = law.law == Law::linear_elastic;
-    const double gradients = n * 15., F = n * 18. + (small ? 0. : 14.), force = 6. + (small ? 0. : 45.) + n * 18.;
+    const bool   small    = law.law == Law::linear_elastic;
+    const double jacobian = n * 18. + 14. + 37., gradients = n * 15., F = n * 18. + (small ? 0. : 14.),
+                 force   = 6. + (small ? 0. : 45.) + n * 18.;
     const double moduli  = small ? 81. : 36. + 270. + 243.;
     const double tangent = moduli + n * 135. + n * (n + 1.) / 2. * 54.;
-    return n * (gradients + F + law.flops + force + tangent);
+    return n * (jacobian + gradients + F + law.flops + force + tangent);
   }
 
   double largest_difference(Elements &elements, Plain &plain, const Problem &problem, const Material &material)
@@ -309,9 +311,10 @@ namespace
     double       n_blocks = 0.;
     for (unsigned int i = 0; i < tangents[2].map().n_owned(); ++i)
       tangents[2].for_row(i, [&](unsigned int, const double *, const bool transposed) { n_blocks += !transposed; });
-    // the geometry is read, and the stiffness zeroed, read and written, through the memory; the rest stays in caches
-    const double geometry = n_nodes * sizeof(ElementKernel::QuadraturePoint) / n_lanes;
-    const double assembly = geometry + 4. * n_nodes + 2. * n_nodes * (n_nodes + 1.) + 3. * 72. * n_blocks / n_cells;
+    // numbers of the nodes are read, and the stiffness zeroed, read and written, through the memory; the rest stays in
+    // caches
+    const double numbers  = n_nodes * dim * sizeof(unsigned int);
+    const double assembly = 4. * n_nodes + 2. * n_nodes * (n_nodes + 1.) + 3. * 72. * n_blocks / n_cells;
     for (const Contender &c : contenders)
     {
       const Named *const law = std::find_if(
@@ -319,7 +322,7 @@ namespace
       const bool plain_deal = law == std::end(laws) || c.name.find("evaluate") != std::string::npos;
       std::cout << degree << ',' << c.name << ',' << n_cells / c.best << ',';
       if (!plain_deal)
-        std::cout << flops(*law, n_nodes) << ',' << (c.name[0] == 'e' ? geometry : assembly);
+        std::cout << flops(*law, n_nodes) << ',' << (c.name[0] == 'e' ? numbers : assembly);
       else
         std::cout << ',';
       std::cout << std::endl;

@@ -78,10 +78,10 @@ def main():
             f"- Peak: {peak / 1e9:.1f} Gflop/s, independent fused multiply-adds on registers. Bandwidth: {bandwidth / 1e9:.1f} "
             "GB/s, STREAM triad of three arrays of 128 MB (24 bytes an entry).\n"
             "- Flops are additions and multiplications as the source has them, without logarithms and roots: with n nodes "
-            "(= points) per cell, each point takes 33 n for gradients and F, 14 for det F, 20 to 380 for the law, 51 + 18 n "
-            "for the force, 549 for dP/dF, 135 n and 54 n (n + 1)/2 for the stiffness. Bytes: 80 for each point of "
-            "reference geometry, and assembled the blocks of the matrix (72 bytes each: zeroed, read, written) with their "
-            "positions (4 each).\n\n" + text
+            "(= points) per cell, each point takes 51 + 18 n for the reference geometry, 33 n for gradients and F, 14 for "
+            "det F, 20 to 380 for the law, 51 + 18 n for the force, 549 for dP/dF, 135 n and 54 n (n + 1)/2 for the "
+            "stiffness. Bytes: numbers of the nodes, and assembled the blocks of the matrix (72 bytes each: zeroed, read, "
+            "written) with their positions (4 each).\n\n" + text
         )
 
 

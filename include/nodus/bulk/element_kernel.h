@@ -14,7 +14,7 @@ namespace Nodus
   class ElementKernel
   {
   public:
-    /// Reference geometry at a quadrature point; nothing else is stored per cell.
+    /// Reference geometry at a quadrature point.
     struct QuadraturePoint
     {
       Lanes inverse_jacobian[dim][dim]; ///< d(unit coordinate e)/d(X_J) in [e][J]
@@ -30,7 +30,11 @@ namespace Nodus
 
     virtual ~ElementKernel() = default;
 
-    /// @param points one entry for each point of the (degree+1)^3 Gauss formula
+    /// One entry for each point of the (degree+1)^3 Gauss formula, until the next call. Computed each time: storing
+    /// them takes 640 bytes for a cell of degree 1, and reading these about as long. @param X of the nodes, as u below
+    virtual const QuadraturePoint *points(const Lanes *X) = 0;
+
+    /// @param points what points() returned
     /// @param u_before that of the previous iterate of Newton's method, for kernels that have unknowns of their own;
     /// null: there is none
     /// @param history not looked at for hyperelastic laws

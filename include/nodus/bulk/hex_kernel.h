@@ -22,9 +22,35 @@ namespace Nodus
     {
       const dealii::QGauss<dim> quadrature(degree + 1);
       for (unsigned int q = 0; q < n_q; ++q)
+      {
+        weight_[q] = quadrature.weight(q);
         for (unsigned int a = 0; a < n_nodes; ++a)
           for (unsigned int e = 0; e < dim; ++e)
             unit_gradient_[q][a][e] = fe.base_element(0).shape_grad(a, quadrature.point(q))[e];
+      }
+    }
+
+    const QuadraturePoint *points(const Lanes *X) override
+    {
+      for (unsigned int q = 0; q < n_q; ++q)
+      {
+        Lanes J[dim][dim] = {}; // dX_i/d(unit coordinate e) in [i][e]
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int e = 0; e < dim; ++e)
+              J[i][e] += X[dim * a + i] * unit_gradient_[q][a][e];
+        Lanes det;
+        determinant(J, det);
+        const Lanes inverse = 1. / det;
+        for (unsigned int e = 0; e < dim; ++e)
+          for (unsigned int i = 0; i < dim; ++i)
+          {
+            const unsigned int i1 = (i + 1) % dim, i2 = (i + 2) % dim, e1 = (e + 1) % dim, e2 = (e + 2) % dim;
+            points_[q].inverse_jacobian[e][i] = inverse * (J[i1][e1] * J[i2][e2] - J[i1][e2] * J[i2][e1]);
+          }
+        points_[q].JxW = weight_[q] * det;
+      }
+      return points_;
     }
 
   protected:
@@ -84,9 +110,10 @@ namespace Nodus
       return stiffness;
     }
 
-    double unit_gradient_[n_q][n_nodes][dim];
-    Lanes  gradient_[n_q][n_nodes][dim];
-    Moduli moduli_[n_q];
+    double          weight_[n_q], unit_gradient_[n_q][n_nodes][dim];
+    QuadraturePoint points_[n_q];
+    Lanes           gradient_[n_q][n_nodes][dim];
+    Moduli          moduli_[n_q];
   };
 } // namespace Nodus
 

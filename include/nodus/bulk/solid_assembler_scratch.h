@@ -53,14 +53,13 @@ namespace Nodus
         return first + std::min(lane, size - 1);
       }
     };
-    std::vector<Batch>                          batches;
-    std::vector<ElementKernel::QuadraturePoint> geometry;           ///< [batch][point]
-    std::vector<Lanes>                          committed, current; ///< states: [batch][point][number]
-    ConstrainedCells                            constrained;
-    std::shared_ptr<const NodeMap>              nodes;      ///< of these cells, then of other ranks' constrained cells
-    std::vector<unsigned int>                   cell_nodes; ///< [cell][node], local numbers
-    std::vector<DoFIndex>                       dofs;       ///< of the nodes of these cells
-    std::vector<NodeMatrix::Position>           positions;  ///< [cell][node a][node b >= a]; constrained: not stored
+    std::vector<Batch>                batches;
+    std::vector<Lanes>                committed, current; ///< states: [batch][point][number]
+    ConstrainedCells                  constrained;
+    std::shared_ptr<const NodeMap>    nodes;      ///< of these cells, then of other ranks' constrained cells
+    std::vector<unsigned int>         cell_nodes; ///< [cell][node], local numbers
+    std::vector<DoFIndex>             dofs;       ///< of the nodes of these cells
+    std::vector<NodeMatrix::Position> positions;  ///< [cell][node a][node b >= a]; constrained: not stored
 
     const Material &material(const Batch &batch) const
     {
@@ -75,7 +74,13 @@ namespace Nodus
       return constrained.index(cell) != dealii::numbers::invalid_unsigned_int;
     }
     /// Gathers values at the local nodes.
-    void get_displacement(const Batch &batch, const std::vector<double> &nodal, std::vector<Lanes> &values) const;
+    void gather(const Batch &batch, const std::vector<double> &nodal, std::vector<Lanes> &values) const;
+    /// The quadrature points of the cells of a batch, until the next call.
+    const ElementKernel::QuadraturePoint *points(const Batch &batch)
+    {
+      gather(batch, nodal_X, batch_X);
+      return kernel(batch).points(batch_X.data());
+    }
     /// The next call begins a Newton iteration.
     void forget_iterates()
     {
@@ -88,16 +93,17 @@ namespace Nodus
     }
 
     // at the local nodes
-    std::vector<double> nodal_u, nodal_u_before, nodal_internal, nodal_external, nodal_rhs, prescribed;
+    std::vector<double> nodal_X, nodal_u, nodal_u_before, nodal_internal, nodal_external, nodal_rhs, prescribed;
     std::vector<char>   is_prescribed;
     // of the batch at hand, as in ElementKernel::integrate()
-    std::vector<Lanes> batch_u, batch_u_before, batch_force, batch_stiffness;
+    std::vector<Lanes> batch_X, batch_u, batch_u_before, batch_force, batch_stiffness;
 
   private:
     void add_initial_states(const Material &material);
     bool is_last(const Vector &u, double t, const dealii::AffineConstraints<double> *constraints, NodeMatrix *tangent);
     void note_prescribed(const dealii::AffineConstraints<double> *constraints);
-    void integrate_rigid(unsigned int batch, Lanes &det_F);
+    void find_positions(const dealii::Mapping<dim> &mapping);
+    void integrate_rigid(const Batch &batch, Lanes &det_F);
     void prefetch(const Batch &batch, NodeMatrix &tangent) const;
     /// The cell in @p lane of the batch at hand.
     void add_loads(unsigned int cell, unsigned int lane, bool with_tangent);
@@ -107,7 +113,7 @@ namespace Nodus
     /// Entry of the stiffness: node a, component i; node b, component k.
     double &entry(unsigned int a, unsigned int i, unsigned int b, unsigned int k, unsigned int lane);
 
-    std::vector<double> last_values; ///< displacement, time and prescribed displacements of the last sweep
+    std::vector<double> last_conditions; ///< time and prescribed displacements of the last sweep
     NodeMatrix         *last_tangent = nullptr;
     // of a cell with loads, or with hanging nodes
     std::vector<double>        cell_u, cell_forces[2], cell_stiffness;
