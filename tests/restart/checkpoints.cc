@@ -159,7 +159,11 @@ int main(int argc, char **argv)
   expect("a truncated one is passed over", restart(p), {"increment 5"});
 
   put(kept, checkpoints);
-  std::fstream(checkpoints / "000006" / "common", std::ios::in | std::ios::out).seekp(20).put('!');
+  {
+    std::fstream file(checkpoints / "000006" / "common", std::ios::in | std::ios::out);
+    const int    byte = file.seekg(20).get();
+    file.seekp(20).put(static_cast<char>(~byte));
+  }
   expect("a changed one is passed over", restart(p), {"increment 5"});
 
   put(kept, checkpoints);
