@@ -1,4 +1,5 @@
 #include <nodus/contact/contact_assembler.h>
+#include <nodus/wait_for_all.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -409,6 +410,7 @@ namespace Nodus
         for (unsigned int c = 0; c < dim; ++c)
           if (jump_rhs[3 * s + c] != 0. && !surfaces_.fixed(e->node, c))
             system.rhs.block(0)(surfaces_.nodes()[e->node].dofs[c]) += e->weight * jump_rhs[3 * s + c];
+    wait_for_all(layout.communicator);
     system.rhs.compress(dealii::VectorOperation::add);
     const auto add_resultant = [&](std::vector<double> &sum, const RigidShare &share, const Vector3 &force)
     {

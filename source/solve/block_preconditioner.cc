@@ -145,8 +145,8 @@ namespace Nodus
     m                     = src.block(1).trilinos_vector();
     apply_multiplier_blocks(m);
     Epetra_MultiVector &f = augmented_rhs_.trilinos_vector();
-    system_.B().Multiply(true, m, f);
-    f.Update(1., src.block(0).trilinos_vector(), 1.);
+    f                     = src.block(0).trilinos_vector();
+    add_transposed_product(system_.B(), 1., m, f);
 
     multigrid_->vmult(dst.block(0), augmented_rhs_);
 

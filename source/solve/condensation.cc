@@ -21,7 +21,6 @@ namespace Nodus
       , nodes_(system.bulk().map())
       , u_(nodes_.row_map(), 1)
       , f_(nodes_.row_map(), 1)
-      , part_(nodes_.row_map(), 1)
       , multiplier_(system.B().RowMap(), 1)
   {
     rows_.resize(nodes_.size());
@@ -256,7 +255,7 @@ namespace Nodus
           add(other.node, other.block);
       }
     }
-    T_ = make_matrix(entries, nodes_.row_map(), nodes_.row_map());
+    T_ = std::make_unique<CouplingMatrix>(entries, nodes_.row_map(), nodes_.row_map());
   }
 
   void Condensation::apply_stiffness(Epetra_MultiVector &m) const
@@ -273,24 +272,28 @@ namespace Nodus
   {
     system_.B().Multiply(false, u, multiplier_);
     apply_stiffness(multiplier_);
-    system_.B().Multiply(true, multiplier_, part_);
-    f.Update(1., part_, 1.);
+    add_transposed_product(system_.B(), 1., multiplier_, f);
+  }
+
+  void Condensation::take_out(Epetra_MultiVector &v) const
+  {
+    for (const unsigned int i : replaced_)
+      if (i < nodes_.n_owned())
+        std::fill_n(v[0] + dim * i, dim, 0.);
   }
 
   void Condensation::apply_transformation(const Epetra_MultiVector &y, Epetra_MultiVector &u) const
   {
-    T_->Multiply(false, y, u);
-    for (int i = 0; i < u.MyLength(); ++i)
-      if (!taken_out_[i / dim])
-        u[0][i] = y[0][i];
+    u.Update(1., y, 0.);
+    take_out(u);
+    T_->add_product(y, u);
   }
 
   void Condensation::apply_transposed(const Epetra_MultiVector &f, Epetra_MultiVector &y) const
   {
-    T_->Multiply(true, f, y);
-    for (int i = 0; i < y.MyLength(); ++i)
-      if (!taken_out_[i / dim])
-        y[0][i] += f[0][i];
+    y.Update(1., f, 0.);
+    take_out(y);
+    T_->add_transposed_product(f, y);
   }
 
   void Condensation::vmult(Vector &y, const Vector &x) const
@@ -333,8 +336,8 @@ namespace Nodus
     add_springs(u_g, f_);
     multiplier_ = b.block(1).trilinos_vector();
     apply_stiffness(multiplier_);
-    system_.B().Multiply(true, multiplier_, part_);
-    f_.Update(1., b.block(0).trilinos_vector(), 1., part_, -1.);
+    f_.Update(1., b.block(0).trilinos_vector(), -1.);
+    add_transposed_product(system_.B(), 1., multiplier_, f_);
     rhs.reinit(b.block(0));
     apply_transposed(f_, rhs.trilinos_vector());
     for (const auto &[i, diagonal] : eliminated_)
@@ -354,8 +357,8 @@ namespace Nodus
     system_.B().Multiply(false, u, m);
     m.Update(-1., g, 1.);
     apply_stiffness(m);
-    system_.B().Multiply(true, m, part_);
-    f_.Update(1., b.block(0).trilinos_vector(), -1., part_, -1.);
+    f_.Update(1., b.block(0).trilinos_vector(), -1.);
+    add_transposed_product(system_.B(), -1., m, f_);
     std::vector<Eigen::Vector3d> force(sites_.size(), Eigen::Vector3d::Zero());
     for (unsigned int k = 0; k < sites_.size(); ++k)
     {

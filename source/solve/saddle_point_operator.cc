@@ -1,4 +1,5 @@
 #include <nodus/solve/saddle_point_operator.h>
+#include <nodus/wait_for_all.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/mpi.templates.h>
@@ -55,6 +56,7 @@ namespace Nodus
     for (auto e = first; e != entries.end(); ++e)
       outgoing[owner(e->row)].push_back(*e);
     entries.erase(first, entries.end());
+    wait_for_all(communicator_);
     for (const auto &[source, received] : dealii::Utilities::MPI::some_to_some(communicator_, outgoing))
       entries.insert(entries.end(), received.begin(), received.end());
 
@@ -70,29 +72,6 @@ namespace Nodus
         entries[n++] = e;
     entries.resize(n);
     return entries;
-  }
-
-  std::unique_ptr<Epetra_CrsMatrix>
-  make_matrix(const std::vector<MatrixEntry> &entries, const Epetra_Map &range, const Epetra_Map &domain)
-  {
-    std::vector<int>    length(std::max(1, range.NumMyElements()), 0), columns(entries.size());
-    std::vector<double> values(entries.size());
-    for (std::size_t k = 0; k < entries.size(); ++k)
-    {
-      ++length[range.LID(static_cast<int>(entries[k].row))];
-      columns[k] = entries[k].column;
-      values[k]  = entries[k].value;
-    }
-    auto        matrix = std::make_unique<Epetra_CrsMatrix>(Copy, range, length.data(), true);
-    std::size_t k      = 0;
-    while (k < entries.size())
-    {
-      const int row = entries[k].row, n = length[range.LID(row)];
-      matrix->InsertGlobalValues(row, n, values.data() + k, columns.data() + k);
-      k += n;
-    }
-    matrix->FillComplete(domain, range);
-    return matrix;
   }
 
   SaddlePointOperator::SaddlePointOperator(const LinearSystem &system)
@@ -123,12 +102,12 @@ namespace Nodus
     B_                      = make_matrix(m_ownership_.exchange(std::move(B)), m_map, u_map);
     C_                      = make_matrix(m_ownership_.exchange(std::move(C)), m_map, m_map);
     if (dealii::Utilities::MPI::max(uu_entries_.empty() ? 0 : 1, layout.communicator) != 0)
-      C_uu_ = make_matrix(uu_entries_, u_map, u_map);
+      C_uu_ = std::make_unique<CouplingMatrix>(uu_entries_, u_map, u_map);
     equilibrate();
     if (!system.symmetric)
       make_variation();
-    const double norms =
-        bulk().norm_squared() + B_->NormFrobenius() + C_->NormFrobenius() + (C_uu_ ? C_uu_->NormFrobenius() : 0.);
+    const double norms = bulk().norm_squared() + B_->NormFrobenius() + C_->NormFrobenius() +
+                         (C_uu_ ? C_uu_->rows().NormFrobenius() : 0.);
     if (!std::isfinite(norms))
       throw SolverFailure("Krylov solver: the matrix holds a value that is not finite.",
                           SolverFailure::Kind::not_finite);
@@ -137,14 +116,12 @@ namespace Nodus
   void SaddlePointOperator::equilibrate()
   {
     const Epetra_Map         &u_map = bulk().map().row_map();
-    Epetra_Vector             diagonal(u_map), part(u_map);
+    Epetra_Vector             diagonal(u_map);
     const std::vector<double> bulk_diagonal = bulk().diagonal();
     std::copy(bulk_diagonal.begin(), bulk_diagonal.end(), diagonal.Values());
-    if (C_uu_)
-    {
-      C_uu_->ExtractDiagonalCopy(part);
-      diagonal.Update(1., part, 1.);
-    }
+    for (const MatrixEntry &e : uu_entries_)
+      if (e.row == e.column)
+        diagonal[u_map.LID(static_cast<int>(e.row))] += e.value;
     double mean;
     diagonal.Norm1(&mean);
     mean /= u_map.NumGlobalElements();
@@ -210,11 +187,11 @@ namespace Nodus
     const Epetra_Map   &u_map = bulk().map().row_map();
     const Epetra_Map    m_map = owned_m_.make_trilinos_map(system_.layout->communicator, false);
     const Epetra_Vector scale(View, m_map, scale_.data());
-    variation_.uu = make_matrix(u_ownership_.exchange(std::move(uu)), u_map, u_map);
-    variation_.um = make_matrix(u_ownership_.exchange(std::move(um)), u_map, m_map);
+    variation_.uu = std::make_unique<CouplingMatrix>(u_ownership_.exchange(std::move(uu)), u_map, u_map);
+    variation_.um = std::make_unique<CouplingMatrix>(u_ownership_.exchange(std::move(um)), u_map, m_map);
     variation_.mu = make_matrix(m_ownership_.exchange(std::move(mu)), m_map, u_map);
     variation_.mm = make_matrix(m_ownership_.exchange(std::move(mm)), m_map, m_map);
-    variation_.um->RightScale(scale);
+    variation_.um->rows().RightScale(scale);
     variation_.mu->LeftScale(scale);
     variation_.mm->LeftScale(scale);
     variation_.mm->RightScale(scale);
@@ -229,11 +206,7 @@ namespace Nodus
   void SaddlePointOperator::add_coupling(const Epetra_MultiVector &u, Epetra_MultiVector &f) const
   {
     if (C_uu_)
-    {
-      Epetra_MultiVector part(f.Map(), 1, false);
-      C_uu_->Multiply(false, u, part);
-      f.Update(1., part, 1.);
-    }
+      C_uu_->add_product(u, f);
   }
 
   Eigen::Matrix3d SaddlePointOperator::own_coupling(const DoFIndex node) const
@@ -253,11 +226,9 @@ namespace Nodus
   {
     const Epetra_MultiVector &u = src.block(0).trilinos_vector(), &m = src.block(1).trilinos_vector();
     Epetra_MultiVector       &f = dst.block(0).trilinos_vector(), &g = dst.block(1).trilinos_vector();
-    Epetra_MultiVector        part(f.Map(), 1, false);
 
     apply_stiffness(u, f);
-    B_->Multiply(true, m, part);
-    f.Update(1., part, 1.);
+    add_transposed_product(*B_, 1., m, f);
 
     Epetra_MultiVector m_part(g.Map(), 1, false);
     B_->Multiply(false, u, g);
@@ -265,10 +236,8 @@ namespace Nodus
     g.Update(-1., m_part, 1.);
     if (!variation_.uu)
       return;
-    variation_.uu->Multiply(false, u, part);
-    f.Update(1., part, 1.);
-    variation_.um->Multiply(false, m, part);
-    f.Update(1., part, 1.);
+    variation_.uu->add_product(u, f);
+    variation_.um->add_product(m, f);
     variation_.mu->Multiply(false, u, m_part);
     g.Update(1., m_part, 1.);
     variation_.mm->Multiply(false, m, m_part);

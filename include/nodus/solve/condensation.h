@@ -102,6 +102,7 @@ namespace Nodus
 
     void apply_stiffness(Epetra_MultiVector &m) const;                          ///< m = D m
     void add_springs(const Epetra_MultiVector &u, Epetra_MultiVector &f) const; ///< f += B^T D B u
+    void take_out(Epetra_MultiVector &v) const; ///< zeros at the nodes that are taken out
     void apply_transformation(const Epetra_MultiVector &y, Epetra_MultiVector &u) const;
     void apply_transposed(const Epetra_MultiVector &f, Epetra_MultiVector &y) const;
 
@@ -113,9 +114,9 @@ namespace Nodus
     std::vector<char>                            taken_out_;
     std::vector<unsigned int>                    replaced_;   ///< local nodes that are taken out
     std::vector<std::pair<unsigned int, double>> eliminated_; ///< owned unknowns without meaning, and a diagonal
-    std::unique_ptr<Epetra_CrsMatrix>            T_;          ///< rows that are not those of the identity
+    std::unique_ptr<CouplingMatrix>              T_;          ///< rows that are not those of the identity
     Vector                                       particular_; ///< u_g
-    mutable Epetra_MultiVector                   u_, f_, part_, multiplier_;
+    mutable Epetra_MultiVector                   u_, f_, multiplier_;
   };
 } // namespace Nodus
 

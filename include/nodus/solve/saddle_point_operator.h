@@ -1,6 +1,7 @@
 #ifndef nodus_solve_saddle_point_operator_h
 #define nodus_solve_saddle_point_operator_h
 
+#include <nodus/solve/coupling_matrix.h>
 #include <nodus/solve/linear_solver.h>
 #include <nodus/solve/linear_system.h>
 
@@ -14,19 +15,6 @@
 
 namespace Nodus
 {
-  /// An entry of a distributed matrix, on its way to the rank that owns the row.
-  struct MatrixEntry
-  {
-    DoFIndex row, column;
-    double   value;
-
-    template <typename Archive>
-    void serialize(Archive &archive, const unsigned int)
-    {
-      archive &row &column &value;
-    }
-  };
-
   /// Contiguous index ranges of the ranks, known to every rank.
   class Ownership
   {
@@ -133,18 +121,16 @@ namespace Nodus
     const Ownership                   u_ownership_, m_ownership_;
     const dealii::IndexSet            owned_m_;
     std::vector<MatrixEntry>          uu_entries_;
-    std::unique_ptr<Epetra_CrsMatrix> B_, C_, C_uu_; ///< C_uu is null when it has no entries
-    std::vector<double>               scale_;        ///< of owned multipliers: multiplier = scale x unknown
+    std::unique_ptr<Epetra_CrsMatrix> B_, C_;
+    std::unique_ptr<CouplingMatrix>   C_uu_;  ///< null when it has no entries
+    std::vector<double>               scale_; ///< of owned multipliers: multiplier = scale x unknown
     std::vector<double>               stiffness_;
     struct
     {
-      std::unique_ptr<Epetra_CrsMatrix> uu, um, mu, mm;
+      std::unique_ptr<CouplingMatrix>   uu, um;
+      std::unique_ptr<Epetra_CrsMatrix> mu, mm;
     } variation_; ///< null in a symmetric system
   };
-
-  /// Matrix of the sorted @p entries of owned rows, with the given row and column maps. Collective.
-  std::unique_ptr<Epetra_CrsMatrix>
-  make_matrix(const std::vector<MatrixEntry> &entries, const Epetra_Map &range, const Epetra_Map &domain);
 } // namespace Nodus
 
 #endif

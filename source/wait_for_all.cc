@@ -1,0 +1,21 @@
+#include <nodus/wait_for_all.h>
+
+#include <chrono>
+#include <thread>
+
+namespace Nodus
+{
+  void wait_for_all(const MPI_Comm communicator)
+  {
+    MPI_Request request;
+    MPI_Ibarrier(communicator, &request);
+    const auto begin = std::chrono::steady_clock::now();
+    for (int all_here = 0; !all_here;)
+    {
+      MPI_Test(&request, &all_here, MPI_STATUS_IGNORE);
+      // no sleep is shorter than some 0.05 ms
+      if (!all_here && std::chrono::steady_clock::now() - begin > std::chrono::microseconds(20))
+        std::this_thread::sleep_for(std::chrono::microseconds(40));
+    }
+  }
+} // namespace Nodus
