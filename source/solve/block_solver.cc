@@ -31,7 +31,13 @@ namespace Nodus
         preconditioner =
             std::make_unique<const BlockPreconditioner>(matrix, parameters_.augmentation_factor, node_positions_);
       }
-      const KrylovReport krylov = left_gmres(matrix, *preconditioner, b, tolerance, parameters_.maximum_iterations, x);
+      const KrylovReport krylov = left_gmres(
+          matrix,
+          [&](BlockVector &z, const BlockVector &r) { preconditioner->vmult(z, r); },
+          b,
+          tolerance,
+          parameters_.maximum_iterations,
+          x);
       if (!(krylov.residual <= tolerance))
       {
         std::ostringstream message;

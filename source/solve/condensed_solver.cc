@@ -119,8 +119,14 @@ namespace Nodus
                                       const double               tolerance,
                                       BlockVector               &x) const
   {
-    const KrylovReport report =
-        left_gmres(matrix, CondensedCycle(condensation, *multigrid_), b, tolerance, parameters_.maximum_iterations, x);
+    const CondensedCycle cycle(condensation, *multigrid_);
+    const KrylovReport   report = left_gmres(
+        matrix,
+        [&](BlockVector &z, const BlockVector &r) { cycle.vmult(z, r); },
+        b,
+        tolerance,
+        parameters_.maximum_iterations,
+        x);
     if (!(report.residual <= tolerance))
       fail(report.residual, report.iterations, tolerance);
     return report.iterations;

@@ -1,3 +1,4 @@
+#include <nodus/memory.h>
 #include <nodus/solve/coarse_matrix.h>
 #include <nodus/solve/multigrid.h>
 
@@ -65,6 +66,7 @@ namespace Nodus
                        std::vector<double>    modes,
                        unsigned int           smoother_sweeps)
   {
+    give_back_memory(); // from here to the end of the iterations the program needs most
     std::unique_ptr<NodeMatrix> matrix = add_level(K, nullptr, &A, modes, smoother_sweeps);
     smoother_sweeps *= 2; // the coarse levels cost little
     bool stalls = false;

@@ -67,6 +67,10 @@ namespace Nodus
                const std::function<unsigned int(const BlockVector &scaled, BlockVector &x)> &iterate,
                std::vector<BlockVector>                                                     &solutions) const;
 
+    MPI_Comm communicator() const
+    {
+      return system_.layout->communicator;
+    }
     bool symmetric() const
     {
       return system_.symmetric;
