@@ -15,9 +15,16 @@ namespace Nodus
   using ModePanel::add_product;
   using ModePanel::add_transposed_product;
   using ModePanel::load;
+  using ModePanel::Modes;
   using ModePanel::none;
   using ModePanel::Panel;
   using ModePanel::SparseRow;
+
+  namespace
+  {
+    /// Blocks of P to be fetched from memory ahead of their use.
+    constexpr unsigned int ahead = 64;
+  } // namespace
 
   Aggregation::Aggregation(const NodeMatrix                         &K,
                            const CorrectedMatrix                    &A,
@@ -331,10 +338,12 @@ namespace Nodus
     for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
       for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
       {
-        double *const      sum = values + n_modes * column_[k];
-        const float *const p   = blocks_.data() + block_size * std::size_t(k);
-        for (unsigned int m = 0; m < n_modes; ++m)
-          sum[m] += p[m] * fine[dim * i] + p[n_modes + m] * fine[dim * i + 1] + p[2 * n_modes + m] * fine[dim * i + 2];
+        const float *const p = blocks_.data() + block_size * std::size_t(k);
+        __builtin_prefetch(p + block_size * ahead);
+        Modes sum = Modes::load(values + n_modes * column_[k]);
+        for (unsigned int c = 0; c < dim; ++c)
+          sum.add_product(Modes::load(p + n_modes * c), fine[dim * i + c]);
+        sum.store(values + n_modes * column_[k]);
       }
     if (import_)
     {
@@ -353,13 +362,18 @@ namespace Nodus
     }
     const double *const values = import_ ? (*values_)[0] : coarse;
     for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
+    {
+      Modes sum[dim] = {};
       for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
       {
-        const double *const x = values + n_modes * column_[k];
-        const float *const  p = blocks_.data() + block_size * std::size_t(k);
+        const float *const p = blocks_.data() + block_size * std::size_t(k);
+        __builtin_prefetch(p + block_size * ahead);
+        const Modes x = Modes::load(values + n_modes * column_[k]);
         for (unsigned int c = 0; c < dim; ++c)
-          for (unsigned int m = 0; m < n_modes; ++m)
-            fine[dim * i + c] += p[n_modes * c + m] * x[m];
+          sum[c].add_product(Modes::load(p + n_modes * c), x);
       }
+      for (unsigned int c = 0; c < dim; ++c)
+        fine[dim * i + c] += sum[c].sum();
+    }
   }
 } // namespace Nodus
