@@ -10,9 +10,10 @@ namespace Nodus
     std::vector<DoFIndex> columns(const std::vector<MatrixEntry> &entries)
     {
       std::vector<DoFIndex> nodes;
-      nodes.reserve(entries.size());
+      nodes.reserve(entries.size() / dim);
       for (const MatrixEntry &e : entries)
-        nodes.push_back(e.column / dim);
+        if (nodes.empty() || nodes.back() != e.column / dim)
+          nodes.push_back(e.column / dim);
       return nodes;
     }
   } // namespace
@@ -36,17 +37,29 @@ namespace Nodus
       const DoFIndex node = entry->row / dim;
       const auto     last =
           std::find_if(entry, correction.end(), [&](const MatrixEntry &e) { return e.row / dim != node; });
-      const unsigned int i     = nodes_.local(node);
-      const std::size_t  first = column_.size();
+      const unsigned int i      = nodes_.local(node);
+      const std::size_t  first  = column_.size();
+      DoFIndex           column = dealii::numbers::invalid_dof_index; // of the entry before: up to three in a row
       for (auto e = entry; e != last; ++e)
-        column_.push_back(nodes_.local(e->column / dim));
+        if (e->column / dim != column)
+        {
+          column = e->column / dim;
+          column_.push_back(nodes_.local(column));
+        }
       std::sort(column_.begin() + first, column_.end());
       column_.erase(std::unique(column_.begin() + first, column_.end()), column_.end());
       values_.resize(9 * column_.size(), 0.F);
+      float *block = nullptr;
+      column       = dealii::numbers::invalid_dof_index;
       for (auto e = entry; e != last; ++e)
       {
-        const auto found = std::lower_bound(column_.begin() + first, column_.end(), nodes_.local(e->column / dim));
-        values_[9 * (found - column_.begin()) + dim * (e->row % dim) + e->column % dim] += e->value;
+        if (e->column / dim != column)
+        {
+          column = e->column / dim;
+          block  = &values_[9 * (std::lower_bound(column_.begin() + first, column_.end(), nodes_.local(column)) -
+                                column_.begin())];
+        }
+        block[dim * (e->row % dim) + e->column % dim] += e->value;
       }
       start_[i + 1] = column_.size() - first;
       rows_.push_back(i);
