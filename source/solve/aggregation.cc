@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 namespace Nodus
@@ -206,10 +207,13 @@ namespace Nodus
         const unsigned int a = row.columns()[k];
         Panel              p{};
         add_product(D_inverse[i].data(), false, row.panel(k), p);
-        float block[block_size];
-        for (unsigned int l = 0; l < block_size; ++l)
-          block[l] = (a == aggregate_[i] ? panels[i].row[l / n_modes][l % n_modes] : 0.) -
-                     omega * p.row[l / n_modes][l % n_modes];
+        float block[block_size + 2];
+        for (unsigned int c = 0; c < dim; ++c) // in this order: each row overwrites what the one before spilt over
+        {
+          const auto exact   = a == aggregate_[i] ? panels[i].row[c] - omega * p.row[c] : -omega * p.row[c];
+          const auto rounded = __builtin_convertvector(exact, ModePanel::Stored);
+          std::memcpy(block + n_modes * c, &rounded, sizeof(rounded));
+        }
         if (std::all_of(block, block + block_size, [](const float value) { return value == 0.F; }))
           continue;
         column_.push_back(a);

@@ -190,15 +190,23 @@ namespace Nodus
 
   bool NodeMatrix::decoupled(const unsigned int dof) const
   {
+    const NodePattern &p = *pattern_;
     const unsigned int i = dof / dim, c = dof % dim;
-    bool               zero = true;
-    for_row(i,
-            [&](const unsigned int j, const double *block, const bool transposed)
-            {
-              for (unsigned int d = 0; d < dim; ++d)
-                zero = zero && ((j == i && c == d) || block[transposed ? 3 * d + c : 3 * c + d] == 0.);
-            });
-    return zero;
+    const auto         vanishes = [&](const std::size_t k, const unsigned int first, const unsigned int step)
+    {
+      const double *const entry = values_.data() + 9 * k + first;
+      return entry[0] == 0. && entry[step] == 0. && entry[2 * step] == 0.;
+    };
+    for (unsigned int d = 0; d < dim; ++d)
+      if (d != c && diagonal(i)[dim * c + d] != 0.)
+        return false;
+    for (std::uint32_t k = p.start[i] + 1; k < p.start[i + 1]; ++k)
+      if (!vanishes(k, dim * c, 1))
+        return false;
+    for (std::uint32_t k = p.lower_start[i]; k < p.lower_start[i + 1]; ++k)
+      if (!vanishes(p.lower[k].block, c, dim))
+        return false;
+    return true;
   }
 
   template <typename Number>
