@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 namespace Nodus
@@ -15,9 +16,16 @@ namespace Nodus
   using ModePanel::add_product;
   using ModePanel::add_transposed_product;
   using ModePanel::load;
+  using ModePanel::Modes;
   using ModePanel::none;
   using ModePanel::Panel;
   using ModePanel::SparseRow;
+
+  namespace
+  {
+    /// Blocks of P to be fetched from memory ahead of their use.
+    constexpr unsigned int ahead = 64;
+  } // namespace
 
   Aggregation::Aggregation(const NodeMatrix                         &K,
                            const CorrectedMatrix                    &A,
@@ -199,10 +207,13 @@ namespace Nodus
         const unsigned int a = row.columns()[k];
         Panel              p{};
         add_product(D_inverse[i].data(), false, row.panel(k), p);
-        float block[block_size];
-        for (unsigned int l = 0; l < block_size; ++l)
-          block[l] = (a == aggregate_[i] ? panels[i].row[l / n_modes][l % n_modes] : 0.) -
-                     omega * p.row[l / n_modes][l % n_modes];
+        float block[block_size + 2];
+        for (unsigned int c = 0; c < dim; ++c) // in this order: each row overwrites what the one before spilt over
+        {
+          const auto exact   = a == aggregate_[i] ? panels[i].row[c] - omega * p.row[c] : -omega * p.row[c];
+          const auto rounded = __builtin_convertvector(exact, ModePanel::Stored);
+          std::memcpy(block + n_modes * c, &rounded, sizeof(rounded));
+        }
         if (std::all_of(block, block + block_size, [](const float value) { return value == 0.F; }))
           continue;
         column_.push_back(a);
@@ -331,10 +342,12 @@ namespace Nodus
     for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
       for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
       {
-        double *const      sum = values + n_modes * column_[k];
-        const float *const p   = blocks_.data() + block_size * std::size_t(k);
-        for (unsigned int m = 0; m < n_modes; ++m)
-          sum[m] += p[m] * fine[dim * i] + p[n_modes + m] * fine[dim * i + 1] + p[2 * n_modes + m] * fine[dim * i + 2];
+        const float *const p = blocks_.data() + block_size * std::size_t(k);
+        __builtin_prefetch(p + block_size * ahead);
+        Modes sum = Modes::load(values + n_modes * column_[k]);
+        for (unsigned int c = 0; c < dim; ++c)
+          sum.add_product(Modes::load(p + n_modes * c), fine[dim * i + c]);
+        sum.store(values + n_modes * column_[k]);
       }
     if (import_)
     {
@@ -353,13 +366,18 @@ namespace Nodus
     }
     const double *const values = import_ ? (*values_)[0] : coarse;
     for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
+    {
+      Modes sum[dim] = {};
       for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
       {
-        const double *const x = values + n_modes * column_[k];
-        const float *const  p = blocks_.data() + block_size * std::size_t(k);
+        const float *const p = blocks_.data() + block_size * std::size_t(k);
+        __builtin_prefetch(p + block_size * ahead);
+        const Modes x = Modes::load(values + n_modes * column_[k]);
         for (unsigned int c = 0; c < dim; ++c)
-          for (unsigned int m = 0; m < n_modes; ++m)
-            fine[dim * i + c] += p[n_modes * c + m] * x[m];
+          sum[c].add_product(Modes::load(p + n_modes * c), x);
       }
+      for (unsigned int c = 0; c < dim; ++c)
+        fine[dim * i + c] += sum[c].sum();
+    }
   }
 } // namespace Nodus

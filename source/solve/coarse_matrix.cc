@@ -2,6 +2,9 @@
 #include <nodus/solve/saddle_point_operator.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/mpi.templates.h>
+
+#include <map>
 
 namespace Nodus
 {
@@ -16,18 +19,29 @@ namespace Nodus
                 const dealii::IndexSet      &owned,
                 const MPI_Comm               communicator)
     {
-      const unsigned int       n_owned = rows.size() - ghosts.size();
-      std::vector<MatrixEntry> entries;
+      const unsigned int                          n_owned = rows.size() - ghosts.size();
+      const Ownership                             ownership(owned, communicator);
+      std::map<unsigned int, std::vector<double>> outgoing; // row, column, block
       for (unsigned int g = 0; g < ghosts.size(); ++g)
+      {
+        std::vector<double> &numbers = outgoing[ownership.owner(n_modes * ghosts[g])];
         rows[n_owned + g].for_each(
             [&](const DoFIndex column, const CoarseRow::Block &block)
             {
-              for (unsigned int k = 0; k < n_modes * n_modes; ++k)
-                entries.push_back({n_modes * ghosts[g] + k / n_modes, n_modes * column + k % n_modes, block[k]});
+              numbers.push_back(ghosts[g]);
+              numbers.push_back(column);
+              numbers.insert(numbers.end(), block.begin(), block.begin() + n_modes * n_modes);
             });
+      }
       rows.resize(n_owned);
-      for (const MatrixEntry &e : Ownership(owned, communicator).exchange(std::move(entries)))
-        rows[e.row / n_modes - first][e.column / n_modes][n_modes * (e.row % n_modes) + e.column % n_modes] += e.value;
+      for (const auto &[rank, numbers] : dealii::Utilities::MPI::some_to_some(communicator, outgoing))
+        for (auto p = numbers.begin(); p != numbers.end();)
+        {
+          CoarseRow        &row   = rows[static_cast<DoFIndex>(*p++) - first];
+          CoarseRow::Block &block = row[static_cast<DoFIndex>(*p++)];
+          for (unsigned int k = 0; k < n_modes * n_modes; ++k)
+            block[k] += *p++;
+        }
     }
 
     void fill_diagonal(std::vector<CoarseRow> &rows, const DoFIndex first, const MPI_Comm communicator)

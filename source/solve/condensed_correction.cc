@@ -1,8 +1,11 @@
 #include <nodus/solve/condensation.h>
 
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/mpi.templates.h>
+
 #include <algorithm>
-#include <cstring>
-#include <unordered_map>
+#include <cstdint>
+#include <map>
 
 namespace Nodus
 {
@@ -10,20 +13,46 @@ namespace Nodus
   {
     using Matrix3 = Eigen::Matrix3d;
 
-    /// Sums of 3x3 blocks by (row, column) of global nodes.
+    /// Sums of 3x3 blocks by (row, column) of global nodes, found in a table with open addressing.
     class BlockSum
     {
     public:
       Matrix3 &operator()(const DoFIndex row, const DoFIndex column)
       {
-        const auto found = position_.try_emplace((static_cast<std::uint64_t>(row) << 32) | column, blocks_.size());
-        if (found.second)
+        if (2 * (keys_.size() + 1) > table_.size())
+          grow();
+        const std::uint64_t key  = (static_cast<std::uint64_t>(row) << 32) | column;
+        const std::size_t   slot = find(key);
+        if (table_[slot] == none)
+        {
+          table_[slot] = keys_.size();
+          keys_.push_back(key);
           blocks_.emplace_back(Matrix3::Zero());
-        return blocks_[found.first->second];
+        }
+        return blocks_[table_[slot]];
       }
-      std::vector<MatrixEntry> entries() const
+      void clear()
       {
-        std::vector<std::pair<std::uint64_t, std::size_t>> order(position_.begin(), position_.end());
+        std::fill(table_.begin(), table_.end(), none);
+        keys_.clear();
+        blocks_.clear();
+      }
+      /// Calls f(row, column, block) in the order in which the blocks came.
+      template <typename Function>
+      void for_each(const Function &f) const
+      {
+        for (std::size_t k = 0; k < keys_.size(); ++k)
+          f(static_cast<DoFIndex>(keys_[k] >> 32), static_cast<DoFIndex>(keys_[k]), blocks_[k]);
+      }
+      /// Sorted, of the rows for which @p wanted holds.
+      template <typename Predicate>
+      std::vector<MatrixEntry> entries(const Predicate &wanted) const
+      {
+        std::vector<std::pair<std::uint64_t, std::size_t>> order;
+        order.reserve(keys_.size());
+        for (std::size_t k = 0; k < keys_.size(); ++k)
+          if (wanted(static_cast<DoFIndex>(keys_[k] >> 32)))
+            order.emplace_back(keys_[k], k);
         std::sort(order.begin(), order.end());
         std::vector<MatrixEntry> result;
         result.reserve(9 * order.size());
@@ -42,9 +71,46 @@ namespace Nodus
       }
 
     private:
-      std::unordered_map<std::uint64_t, std::size_t> position_;
-      std::vector<Matrix3>                           blocks_;
+      static constexpr std::uint32_t none = -1;
+
+      std::size_t find(const std::uint64_t key) const
+      {
+        const std::size_t mask = table_.size() - 1;
+        std::size_t       slot = (key * 0x9e3779b97f4a7c15U) >> 32 & mask;
+        while (table_[slot] != none && keys_[table_[slot]] != key)
+          slot = (slot + 1) & mask;
+        return slot;
+      }
+      void grow()
+      {
+        table_.assign(std::max<std::size_t>(64, 2 * table_.size()), none);
+        for (std::uint32_t k = 0; k < keys_.size(); ++k)
+          table_[find(keys_[k])] = k;
+      }
+
+      std::vector<std::uint32_t> table_; ///< index into the others, or none; the size is a power of two
+      std::vector<std::uint64_t> keys_;
+      std::vector<Matrix3>       blocks_;
     };
+
+    /// Hands the blocks of rows that are owned elsewhere to their owners, who add them to theirs. Collective.
+    void add_from_other_ranks(BlockSum &sum, const Ownership &rows, const NodeMap &nodes)
+    {
+      std::map<unsigned int, std::vector<double>> outgoing; // row, column, block
+      sum.for_each(
+          [&](const DoFIndex row, const DoFIndex column, const Matrix3 &block)
+          {
+            if (nodes.local(row) < nodes.n_owned())
+              return;
+            std::vector<double> &numbers = outgoing[rows.owner(dim * row)];
+            numbers.push_back(row);
+            numbers.push_back(column);
+            numbers.insert(numbers.end(), block.data(), block.data() + 9);
+          });
+      for (const auto &[rank, numbers] : dealii::Utilities::MPI::some_to_some(nodes.communicator(), outgoing))
+        for (auto p = numbers.begin(); p != numbers.end(); p += 11)
+          sum(static_cast<DoFIndex>(p[0]), static_cast<DoFIndex>(p[1])) += Eigen::Map<const Matrix3>(&p[2]);
+    }
   } // namespace
 
   std::vector<MatrixEntry> Condensation::correction() const
@@ -53,7 +119,7 @@ namespace Nodus
     BlockSum          sum;
 
     // T^T K T where T is not the identity, from the rows of K of the nodes z that it replaces
-    std::unordered_map<DoFIndex, Matrix3> W; // row z of K T
+    BlockSum W; // row z of K T
     for (unsigned int z = 0; z < nodes_.n_owned(); ++z)
       if (const Row *row = rows_[z].get())
       {
@@ -65,8 +131,7 @@ namespace Nodus
                     // column-major maps: a row-major block is read transposed
                     const Matrix3 stored = Eigen::Map<const Matrix3>(values);
                     const Matrix3 K_zc   = transposed ? stored : Matrix3(stored.transpose());
-                    const auto    add    = [&](const DoFIndex node, const Matrix3 &block)
-                    { W.try_emplace(node, Matrix3::Zero()).first->second += block; };
+                    const auto    add = [&](const DoFIndex node, const Matrix3 &block) { W(z_global, node) += block; };
                     if (const Row *other = rows_[c].get())
                     {
                       add(nodes_.global(c), K_zc * other->own);
@@ -79,12 +144,13 @@ namespace Nodus
                     for (const Coupling &coupling : row->others)
                       sum(nodes_.global(c), coupling.node) += K_zc.transpose() * coupling.block;
                   });
-        for (const auto &[column, block] : W)
-        {
-          sum(z_global, column) += row->own.transpose() * block;
-          for (const Coupling &coupling : row->others)
-            sum(coupling.node, column) += coupling.block.transpose() * block;
-        }
+        W.for_each(
+            [&](const DoFIndex, const DoFIndex column, const Matrix3 &block)
+            {
+              sum(z_global, column) += row->own.transpose() * block;
+              for (const Coupling &coupling : row->others)
+                sum(coupling.node, column) += coupling.block.transpose() * block;
+            });
       }
     for (const auto &[i, diagonal] : eliminated_)
       sum(nodes_.global(i / dim), nodes_.global(i / dim))(i % dim, i % dim) += diagonal;
@@ -131,6 +197,7 @@ namespace Nodus
         for (const auto &[j, column] : rows)
           sum(i, j) += row.transpose() * D * column;
     }
-    return system_.displacement_ownership().exchange(sum.entries());
+    add_from_other_ranks(sum, system_.displacement_ownership(), nodes_);
+    return sum.entries([&](const DoFIndex row) { return nodes_.local(row) < nodes_.n_owned(); });
   }
 } // namespace Nodus

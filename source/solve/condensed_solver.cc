@@ -32,7 +32,7 @@ namespace Nodus
       void vmult(BlockVector &x, const BlockVector &b) const
       {
         condensation_.condense(b, rhs_);
-        y_.reinit(rhs_);
+        y_.reinit(rhs_, true);
         multigrid_.vmult(y_, rhs_);
         condensation_.expand(y_, b, x);
       }

@@ -101,26 +101,29 @@ namespace Nodus
 
   void MultigridLevel::smooth(double *const x, double *const r, const bool last) const
   {
-    const unsigned int n     = update_.size();
-    const double       upper = largest_eigenvalue_, lower = upper / 15.;
-    const double       theta = .5 * (upper + lower), delta = .5 * (upper - lower), sigma = theta / delta;
-    double             rho = 1. / sigma;
+    const double upper = largest_eigenvalue_, lower = upper / 15.;
+    const double theta = .5 * (upper + lower), delta = .5 * (upper - lower), sigma = theta / delta;
+    double       rho = 1. / sigma;
     for (unsigned int sweep = 0; sweep < sweeps_; ++sweep)
     {
-      apply_diagonal(product_.data(), r);
       const double next = 1. / (2. * sigma - rho), factor = sweep == 0 ? 1. / theta : 2. * next / delta,
                    momentum = sweep == 0 ? 0. : next * rho;
       if (sweep > 0)
         rho = next;
-      for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int i = 0; i < D_inverse_.size(); ++i)
       {
-        update_[i] = momentum * update_[i] + factor * product_[i];
-        x[i] += update_[i];
+        const double *const D = D_inverse_[i].data(), *const ri = r + dim * i;
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          double &update = update_[dim * i + c];
+          update = momentum * update + factor * (D[dim * c] * ri[0] + D[dim * c + 1] * ri[1] + D[dim * c + 2] * ri[2]);
+          x[dim * i + c] += update;
+        }
       }
       if (last && sweep + 1 == sweeps_)
         return;
       A_.vmult(product_.data(), update_.data());
-      for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int i = 0; i < product_.size(); ++i)
         r[i] -= product_[i];
     }
   }

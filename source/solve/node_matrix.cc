@@ -190,20 +190,30 @@ namespace Nodus
 
   bool NodeMatrix::decoupled(const unsigned int dof) const
   {
+    const NodePattern &p = *pattern_;
     const unsigned int i = dof / dim, c = dof % dim;
-    bool               zero = true;
-    for_row(i,
-            [&](const unsigned int j, const double *block, const bool transposed)
-            {
-              for (unsigned int d = 0; d < dim; ++d)
-                zero = zero && ((j == i && c == d) || block[transposed ? 3 * d + c : 3 * c + d] == 0.);
-            });
-    return zero;
+    const auto         vanishes = [&](const std::size_t k, const unsigned int first, const unsigned int step)
+    {
+      const double *const entry = values_.data() + 9 * k + first;
+      return entry[0] == 0. && entry[step] == 0. && entry[2 * step] == 0.;
+    };
+    for (unsigned int d = 0; d < dim; ++d)
+      if (d != c && diagonal(i)[dim * c + d] != 0.)
+        return false;
+    for (std::uint32_t k = p.start[i] + 1; k < p.start[i + 1]; ++k)
+      if (!vanishes(k, dim * c, 1))
+        return false;
+    for (std::uint32_t k = p.lower_start[i]; k < p.lower_start[i + 1]; ++k)
+      if (!vanishes(p.lower[k].block, c, dim))
+        return false;
+    return true;
   }
 
   template <typename Number>
   void NodePattern::vmult(const Number *a, double *const y, const double *const x) const
   {
+    // Blocks to be fetched ahead: the rows are too short for the hardware to do it in time. Twice as fast from memory.
+    constexpr unsigned int ahead = 128;
     // Rows of a block in vectors of four, the last of which is of the next row: x is zero there.
     typedef double Lanes __attribute__((vector_size(32)));
     typedef Number Stored __attribute__((vector_size(4 * sizeof(Number))));
@@ -222,6 +232,7 @@ namespace Nodus
       Lanes               sum[3] = {};
       const auto          add    = [&](const std::uint32_t j, const bool both)
       {
+        __builtin_prefetch(a + 9 * ahead);
         const Lanes xj = {x[3 * j], x[3 * j + 1], x[3 * j + 2], 0.};
         const Lanes a0 = row(a), a1 = row(a + 3), a2 = row(a + 6);
         sum[0] += a0 * xj;

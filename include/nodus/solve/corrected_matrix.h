@@ -4,14 +4,15 @@
 #include <nodus/solve/node_matrix.h>
 #include <nodus/solve/saddle_point_operator.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
 namespace Nodus
 {
   /// A = S K S + E for multigrid: the stiffness K, S that takes some nodes out, and a symmetric correction E of 3x3
-  /// blocks with rows near the contact surfaces only. Products use a copy of S K S in single precision: half the memory
-  /// traffic.
+  /// blocks with rows near the contact surfaces only. Products use a copy of S K S in single precision, and so is E:
+  /// half the memory traffic.
   class CorrectedMatrix
   {
   public:
@@ -41,7 +42,11 @@ namespace Nodus
                       f(j, block, transposed);
                   });
       for (std::size_t k = start_[i]; k < start_[i + 1]; ++k)
-        f(column_[k], values_.data() + 9 * k, false);
+      {
+        double block[9];
+        std::copy_n(values_.begin() + 9 * k, 9, block);
+        f(column_[k], static_cast<const double *>(block), false);
+      }
     }
 
   private:
@@ -51,7 +56,7 @@ namespace Nodus
     std::vector<float>                       stiffness_; ///< S K S
     std::vector<unsigned int>                rows_;      ///< of the correction that are not empty
     std::vector<std::uint32_t>               start_, column_;
-    std::vector<double>                      values_;
+    std::vector<float>                       values_; ///< and 3 more
   };
 } // namespace Nodus
 

@@ -55,6 +55,53 @@ namespace Nodus::ModePanel
       std::memcpy(sum.data() + n_modes * m, &row[m], sizeof(Lanes));
   }
 
+  /// What the six modes do, without spare lanes.
+  struct Modes
+  {
+    typedef double Four __attribute__((vector_size(32)));
+    typedef double Two __attribute__((vector_size(16)));
+    Four           first;
+    Two            last;
+
+    static Modes load(const double *values)
+    {
+      Modes modes;
+      std::memcpy(&modes.first, values, sizeof(Four));
+      std::memcpy(&modes.last, values + 4, sizeof(Two));
+      return modes;
+    }
+    static Modes load(const float *values)
+    {
+      typedef float StoredFour __attribute__((vector_size(16)));
+      typedef float StoredTwo __attribute__((vector_size(8)));
+      StoredFour    first;
+      StoredTwo     last;
+      std::memcpy(&first, values, sizeof(first));
+      std::memcpy(&last, values + 4, sizeof(last));
+      return {__builtin_convertvector(first, Four), __builtin_convertvector(last, Two)};
+    }
+    void store(double *values) const
+    {
+      std::memcpy(values, &first, sizeof(Four));
+      std::memcpy(values + 4, &last, sizeof(Two));
+    }
+    /// Adds a times b, for each mode or the same for all.
+    void add_product(const Modes &a, const Modes &b)
+    {
+      first += a.first * b.first;
+      last += a.last * b.last;
+    }
+    void add_product(const Modes &a, const double b)
+    {
+      first += a.first * b;
+      last += a.last * b;
+    }
+    double sum() const
+    {
+      return (first[0] + first[1]) + (first[2] + first[3]) + (last[0] + last[1]);
+    }
+  };
+
   /// Sum of panels by column, for one row at a time.
   class SparseRow
   {
