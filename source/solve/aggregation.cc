@@ -189,8 +189,10 @@ namespace Nodus
     SparseRow row;
     row.reinit(n_aggregates_ + ghosts_.size());
     start_.assign(1, 0);
+    // enough but for few nodes; pages that are not touched take no memory, growing and shrinking would take twice as
+    // much
     column_.reserve(5 * n_owned);
-    blocks_.reserve(5 * block_size * n_owned);
+    blocks_.reserve(5 * block_size * n_owned + 2);
     for (unsigned int i = 0; i < n_owned; ++i)
     {
       A_.for_row(K,
@@ -222,9 +224,7 @@ namespace Nodus
       row.clear();
       start_.push_back(column_.size());
     }
-    column_.shrink_to_fit();
     blocks_.resize(blocks_.size() + 2, 0.F); // for load()
-    blocks_.shrink_to_fit();
   }
 
   void Aggregation::make_maps()
