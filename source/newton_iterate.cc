@@ -2,7 +2,6 @@
 #include <nodus/contact/site_values.h>
 #include <nodus/contact_problem_implementation.h>
 #include <nodus/mesh/sides.h>
-#include <nodus/wait_for_all.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -140,7 +139,6 @@ namespace Nodus
       const auto timer = profile.time(Phase::contact_assembly);
       GeometryTangent(parameters.contact_pairs, *surfaces, *geometry, averaged, pairing, jump, weights, *status)
           .add(state, residual, system);
-      wait_for_all(communicator);
     }
     return norms;
   }

@@ -1,4 +1,5 @@
 #include <nodus/contact/geometry_tangent.h>
+#include <nodus/wait_for_all.h>
 
 #include <algorithm>
 
@@ -137,6 +138,7 @@ namespace Nodus
                        [&, multiplier = surfaces_.multiplier(key / size), &value = value](const unsigned int column,
                                                                                           const double       part)
                        { add_gap(multiplier, column, part * value); });
+    wait_for_all(surfaces_.layout().communicator);
     system.rhs.block(0).compress(dealii::VectorOperation::add);
     system.rhs.block(1).compress(dealii::VectorOperation::add);
     system.symmetric = false;
