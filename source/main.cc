@@ -157,7 +157,7 @@ int main(int argc, char **argv)
   // One thread per rank: parallelism is MPI's, and sums do not depend on scheduling.
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Nodus::give_back_memory();
-  const bool                               first_rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  const bool first_rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   try
   {
     const CommandLine command = parse(std::vector<std::string>(argv + 1, argv + argc));

@@ -5,8 +5,8 @@
 
 namespace Nodus
 {
-  /// A barrier in which ranks that come early sleep. MPI's own keep their cores busy: to be used where few ranks have the
-  /// work, those at the contact, before the exchange of what they have found. Late by 0.1 ms at most. Collective.
+  /// A barrier in which ranks that come early sleep. MPI's own keep their cores busy: to be used where few ranks have
+  /// the work, those at the contact, before the exchange of what they have found. Late by 0.1 ms at most. Collective.
   void wait_for_all(MPI_Comm communicator);
 } // namespace Nodus
 

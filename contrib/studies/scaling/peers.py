@@ -17,6 +17,7 @@ import hertz_case
 from hertz_case import common
 
 DEFAULT = [6, 12, 24]
+OFF = "nodus, output off"
 PEERS = ("CalculiX", "Kratos")
 HEADER = ["n", "degrees of freedom", "rounds", "program", "CPU s", "/ nodus", "peak MiB", "bytes per DoF", "private MiB",
           "private bytes per DoF", "Newton iterations", "error of the pressure", "largest / Hertz's"]  # fmt: skip
@@ -35,12 +36,15 @@ def available(program):
 
 
 def run(program, n, mesh):
-    if program == "nodus":
-        found = hertz_case.nodus(n, f"peers_{n}")
+    if program in ("nodus", OFF):
+        sets = {"Output/Write VTU": "false"} if program == OFF else {}
+        found = hertz_case.nodus(n, f"peers_{n}" + ("_off" if sets else ""), sets=sets)
         result = {key: found[key] for key in ("cpu", "peak MiB", "private MiB")}
         result["converged"] = found["exit"] == 0
         if result["converged"]:
             result["Newton"] = found["profile"]["newton_iterations"]
+            if program == OFF:
+                return result
             force, pressure = found["contact"]["slave force z"], hertz_case.pressures(mesh, found["folder"])
     else:
         command = [sys.executable, os.path.join(hertz_case.HERE, "peers", program.lower() + ".py"), str(n)]
@@ -68,7 +72,7 @@ def measure(n, programs, kept):
 def rows(kept):
     for n in sorted(map(int, kept.values)):
         found, dofs = kept.get(str(n)), hertz_case.dofs(n)
-        for program in ("nodus", *PEERS):
+        for program in ("nodus", OFF, *PEERS):
             if program not in found:
                 continue
             r = found[program]
@@ -87,14 +91,14 @@ def rows(kept):
                 f"{r['private MiB']:.0f}",
                 hertz_case.spaced(r["private MiB"] * 2**20 / dofs),
                 r["Newton"],
-                f"{100 * r['error']:.1f} %",
-                f"{r['largest']:.3f}",
+                f"{100 * r['error']:.1f} %" if "error" in r else "",
+                f"{r['largest']:.3f}" if "error" in r else "",
             ]
 
 
 def main():
     kept = hertz_case.Kept("peers")
-    programs = ["nodus"] + [program for program in PEERS if available(program)]
+    programs = ["nodus", OFF] + [program for program in PEERS if available(program)]
     for n in map(int, sys.argv[1:] or DEFAULT):
         measure(n, programs, kept)
     path = os.path.join(hertz_case.HERE, "peers.md")
@@ -107,7 +111,8 @@ friction in one increment, one process and one thread each; the programs took tu
 n = 12, two at n = 24, one above. CPU is user and system time of the least round, with reading the mesh and writing
 results.
 
-- nodus: averaged contact by segment, linear elastic, finite deformation of the contact, condensed solver, Newton to 1e-8.
+- nodus: averaged contact by segment, linear elastic, finite deformation of the contact, condensed solver, Newton to 1e-8;
+  *output off*: without the VTU files, which take memory for a copy of the mesh with its fields.
 - CalculiX: `peers/calculix.py`, surface-to-surface penalty of 50 E, its own slope for hard contact, with which it
   takes its own tolerances (0.5 % of the force); iterative solver with incomplete Cholesky.
 - Kratos: `peers/kratos.py`, mortar by augmented Lagrangian multipliers, linear kinematics, AMG-preconditioned LGMRES

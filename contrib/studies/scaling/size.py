@@ -94,7 +94,7 @@ def write(kept):
 `contrib/studies/scaling/size.py` on {hertz_case.machine()}, one process; {kept.dates()}. Case hertz (`hertz_case.py`),
 Q1, one increment, one run each: other load on the machine changes CPU by 10 to 25 %. Degrees of freedom: displacements.
 *Bytes* are the peak resident memory with the code of all libraries (some 145 MiB), *private* its anonymous part (heap),
-sampled every 10 ms. Condensed: GMRES, with multigrid on what is left when multipliers are eliminated; block: FGMRES on
+sampled every 10 ms. Condensed: GMRES, with multigrid on what is left when multipliers are eliminated; block: GMRES on
 all unknowns; direct: MUMPS.
 
 {text}
