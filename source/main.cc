@@ -171,6 +171,7 @@ int main(int argc, char **argv)
     {
       Nodus::Signals::install();
       solve(Nodus::Parameters::read(command.file, command.overrides), command);
+      Nodus::give_back_memory(); // the end touches all libraries once more
     }
     return 0;
   }
