@@ -301,7 +301,7 @@ namespace Nodus
           solver.type,
           solver_names,
           "Linear solver [-]: direct is MUMPS; condensed eliminates multipliers and held slave displacements and "
-          "needs conjugate gradients with algebraic multigrid (large models); block is FGMRES on all unknowns, "
+          "needs conjugate gradients with algebraic multigrid (large models); block is GMRES on all unknowns, "
           "for what cannot be condensed: integration points and consistent weights. automatic takes direct up to "
           "20000 displacements, for more condensed, or block where that is needed.");
       prm.add_parameter("Tolerance",

@@ -16,9 +16,11 @@ namespace Nodus
 {
   namespace
   {
-    /// A hierarchy is made anew when its iterations per digit have grown by this factor, or this part of the slave
-    /// nodes has other constraints than when it was made: setting it up costs as much as some ten cycles.
-    constexpr double growth = 1.4, changed_part = 0.02;
+    /// A hierarchy is made anew when its iterations per digit have grown by this factor, or more slave nodes than these
+    /// have other constraints than when it was made: setting it up costs as much as some ten cycles, and each such node
+    /// about one iteration, in a model of any size.
+    constexpr double       growth       = 1.4;
+    constexpr unsigned int most_changed = 4;
 
     /// Condensation, one multigrid cycle and expansion: exact but for multigrid and the variation.
     class CondensedCycle
@@ -78,9 +80,7 @@ namespace Nodus
     unsigned int changed = 0;
     for (unsigned int k = 0; k < signature.size(); ++k)
       changed += signature[k] != signature_[k];
-    changed                  = dealii::Utilities::MPI::sum(changed, communicator);
-    const unsigned int total = dealii::Utilities::MPI::sum(static_cast<unsigned int>(signature.size()), communicator);
-    return changed <= changed_part * total;
+    return dealii::Utilities::MPI::sum(changed, communicator) <= most_changed;
   }
 
   unsigned int CondensedSolver::conjugate_gradients(const Condensation &condensation,

@@ -5,7 +5,7 @@
 
 namespace Nodus
 {
-  /// Flexible GMRES on the whole system with the augmented block preconditioner of block_preconditioner.h.
+  /// GMRES on the whole system, from the left, with the augmented block preconditioner of block_preconditioner.h.
   class BlockSolver : public LinearSolver
   {
   public:

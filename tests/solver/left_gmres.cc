@@ -1,0 +1,64 @@
+// GMRES with a basis in single precision reaches any tolerance, as each cycle begins with a residual in double
+// precision.
+
+#include "model_problem.h"
+
+#include <nodus/solve/block_preconditioner.h>
+#include <nodus/solve/left_gmres.h>
+
+#include <deal.II/base/conditional_ostream.h>
+
+#include <iostream>
+
+using namespace ModelProblem;
+
+namespace
+{
+  double relative_residual(const SaddlePointOperator &A, const BlockVector &b, const BlockVector &x)
+  {
+    BlockVector r(b);
+    A.vmult(r, x);
+    r.sadd(-1., 1., b);
+    return r.l2_norm() / b.l2_norm();
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  dealii::ConditionalOStream out(std::cout, dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0);
+  const auto                 check = [&](const std::string &what, const bool holds)
+  { out << what << ": " << (holds ? "yes" : "NO") << std::endl; };
+
+  Options options;
+  options.n_cells = 3;
+  TwoCubes                  problem(options);
+  const SaddlePointOperator A(problem.system);
+  const BlockVector         b = A.scaled(problem.system.rhs);
+  BlockVector               x(b), solution, reference;
+  make_linear_solver(LinearSolverParameters(), problem.layout, problem.node_positions)
+      ->solve(problem.system, reference);
+
+  const BlockPreconditioner preconditioner(A, 3., problem.node_positions);
+  const auto                multigrid = [&](BlockVector &z, const BlockVector &r) { preconditioner.vmult(z, r); };
+  for (const double tolerance : {1e-4, 1e-8, 1e-13})
+  {
+    const KrylovReport report = left_gmres(A, multigrid, b, tolerance, 200, x);
+    out << "Tolerance " << tolerance << std::endl;
+    check("  the residual is below", relative_residual(A, b, x) <= tolerance);
+    check("  and what is reported", std::abs(report.residual - relative_residual(A, b, x)) < 1e-15);
+    check("  no iterations are lost", report.iterations < 3. * -std::log10(tolerance) + 5.);
+  }
+  A.to_solution(x, solution);
+  check("As the direct solver to 1e-11", difference(solution, reference) < 1e-11);
+
+  const auto         none   = [](BlockVector &z, const BlockVector &r) { z = r; };
+  const KrylovReport report = left_gmres(A, none, b, 1e-9, 20000, x);
+  check("Without a preconditioner, more than one cycle of 60", report.iterations > 60);
+  check("  the residual is below 1e-9", relative_residual(A, b, x) <= 1e-9);
+
+  const KrylovReport cut_off = left_gmres(A, multigrid, b, 1e-13, 7, x);
+  check("Cut off after seven iterations", cut_off.iterations == 7);
+  check("  the residual says so",
+        cut_off.residual > 1e-13 && std::abs(cut_off.residual / relative_residual(A, b, x) - 1.) < 1e-6);
+}
