@@ -76,7 +76,6 @@ def measure(n, library):
             "busiest": work.max() / work.mean(),
             "peak": profile["total"]["peak_resident_bytes"],
             "peak before": profile["phases"][0]["peak_resident_bytes"],
-            "peak set-up": profile["phases"][1]["peak_resident_bytes"],
             "Newton": profile["newton_iterations"],
             "Krylov": profile["krylov_iterations"],
             "statuses": [int(contact[f"{name} nodes"]) for name in ("open", "slip", "stick")],
@@ -125,7 +124,7 @@ def write(kept):
             again = f"{100 * (r['work'] / first['work'] - 1) / (ranks - 1):.1f} %" if ranks > 1 else ""
             work.append([n, ranks, f"{r['cpu']:.1f}", f"{r['work']:.2f}", f"{r['work'] / first['work']:.2f}", again,
                          f"{r['busiest']:.2f}"])  # fmt: skip
-            peaks = [r["peak before"], r["peak set-up"] - r["peak before"], r["peak"] - r["peak before"]]
+            peaks = [r["peak before"], r["peak"]]
             memory.append([n, ranks, *[f"{p / 2**20 / ranks:.1f}" for p in peaks]])
         if "sent" in found:
             for what in ("per Krylov", "rest per Newton"):
@@ -137,7 +136,7 @@ def write(kept):
     text = common.table(path, header, rows)
     header = ["n", "ranks", "CPU s", "work s", "work / 1 rank", "again on each further rank", "busiest / mean"]
     work_text = common.table(path, header, work)
-    memory_text = common.table(path, ["n", "ranks", "at start", "mesh and set-up", "whole run"], memory)
+    memory_text = common.table(path, ["n", "ranks", "at start", "whole run"], memory)
     sent_text = common.table(path, ["n", "ranks", "", *COUNTS], sent)
     with open(path, "w") as file:
         file.write(f"""## Ranks
@@ -166,8 +165,8 @@ again), and what ranks that share a core take from each other's cache.
 {work_text}
 ### Peak resident MiB per rank
 
-Mean over ranks. *At start*: code of all libraries, which ranks of one machine share. The others are beyond that; what
-does not fall with more ranks is held by each rank for the whole model.
+Mean over ranks. *At start*: code and tables of all libraries, which ranks of one machine share and which are handed back
+before the mesh is read; a whole run that stays below that has the same peak.
 
 {memory_text}
 ### Messages
