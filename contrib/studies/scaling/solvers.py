@@ -42,7 +42,7 @@ coefficient of friction of 1, has a second solution: four nodes of the thin plat
 `cantilevers` does not reach a relative residual of 1e-13: forces are small beside stiffness times displacement in these slender
 beams. Its systems are solved to 1e-9 (`ATTAINABLE`), and Newton's iterations end with the same residuals as elsewhere.
 A correction that an iterative solver does not bring to its tolerance leaves the rest of its increment to the direct one: once in
-`cantilevers` (condensed) and `rubber_block` (condensed), and in `wedge`.
+`rubber_block` (condensed) and in `wedge`.
 """
 
 
