@@ -47,7 +47,7 @@ int main(int argc, char **argv)
     out << "Tolerance " << tolerance << std::endl;
     check("  the residual is below", relative_residual(A, b, x) <= tolerance);
     check("  and what is reported", std::abs(report.residual - relative_residual(A, b, x)) < 1e-15);
-    check("  no iterations are lost", report.iterations < 3. * -std::log10(tolerance) + 5.);
+    check("  no iterations are lost", report.iterations < 2. * -std::log10(tolerance) + 2.);
   }
   A.to_solution(x, solution);
   check("As the direct solver to 1e-11", difference(solution, reference) < 1e-11);
