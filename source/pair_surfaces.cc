@@ -1,5 +1,6 @@
 #include <nodus/contact/site_values.h>
 #include <nodus/contact_problem_implementation.h>
+#include <nodus/wait_for_all.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -25,6 +26,7 @@ namespace Nodus
     weigh_surfaces();
     if (mesh_is_new)
       carry_over_sticking();
+    wait_for_all(communicator);
   }
 
   /// Displacements of the surface nodes.

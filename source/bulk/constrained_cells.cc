@@ -1,4 +1,5 @@
 #include <nodus/bulk/constrained_cells.h>
+#include <nodus/some_to_some.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/grid/grid_tools.h>
@@ -112,7 +113,7 @@ namespace Nodus
     }
     std::map<unsigned int, Neighbour> neighbours;
     std::vector<DoFIndex>             foreign;
-    for (const auto &[other, groups] : dealii::Utilities::MPI::some_to_some(communicator_, outgoing))
+    for (const auto &[other, groups] : some_to_some(communicator_, outgoing))
       for (const auto &group : groups)
       {
         neighbours[other].cells.emplace_back();

@@ -1,5 +1,6 @@
 #include <nodus/contact/face_directory.h>
 #include <nodus/mesh/region.h>
+#include <nodus/some_to_some.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe.h>
@@ -105,7 +106,6 @@ namespace Nodus
   {
     if (!hanging_.exist())
       return;
-    using dealii::Utilities::MPI::some_to_some;
     const MPI_Comm                               communicator = dof_handler_.get_communicator();
     std::map<unsigned int, std::vector<NodeKey>> nodes, questions;
     for (unsigned int i = 0; i < own_.size(); ++i)
@@ -173,7 +173,7 @@ namespace Nodus
         for (const unsigned int r : ranks)
           outgoing[r].push_back(face);
       }
-    for (const auto &[other, faces] : dealii::Utilities::MPI::some_to_some(communicator, outgoing))
+    for (const auto &[other, faces] : some_to_some(communicator, outgoing))
       at_own_nodes_.insert(at_own_nodes_.end(), faces.begin(), faces.end());
     for (unsigned int f = 0; f < at_own_nodes_.size(); ++f)
     {
@@ -195,7 +195,7 @@ namespace Nodus
         nodes[owner(dof)].insert({2 * face.pair + face.side, dof});
     for (const auto &[other, keys] : nodes)
       questions[other].assign(keys.begin(), keys.end());
-    for (const auto &[other, keys] : dealii::Utilities::MPI::some_to_some(communicator, questions))
+    for (const auto &[other, keys] : some_to_some(communicator, questions))
     {
       std::set<unsigned int> indices;
       for (const NodeKey &key : keys)
@@ -205,7 +205,7 @@ namespace Nodus
         if (at_own_nodes_[i].rank != other) // who has its own faces already
           answers[other].push_back(at_own_nodes_[i]);
     }
-    for (const auto &[other, found] : dealii::Utilities::MPI::some_to_some(communicator, answers))
+    for (const auto &[other, found] : some_to_some(communicator, answers))
       faces.insert(faces.end(), found.begin(), found.end());
     make_unique(faces);
   }

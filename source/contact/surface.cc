@@ -2,6 +2,7 @@
 #include <nodus/contact/master_request.h>
 #include <nodus/contact/surface.h>
 #include <nodus/mesh/region.h>
+#include <nodus/some_to_some.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe.h>
@@ -246,7 +247,7 @@ namespace Nodus
     std::vector<FaceRecord> records;
     for (unsigned int p = 0; p < n_pairs(); ++p)
       records.insert(records.end(), directory_.own(p, master_side).begin(), directory_.own(p, master_side).end());
-    for (const auto &[other, faces] : dealii::Utilities::MPI::some_to_some(communicator_, outgoing))
+    for (const auto &[other, faces] : some_to_some(communicator_, outgoing))
       records.insert(records.end(), faces.begin(), faces.end());
     directory_.add_layer(records);
     take_master_faces(records);

@@ -1,4 +1,5 @@
 #include <nodus/mesh/hanging_nodes.h>
+#include <nodus/some_to_some.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -14,7 +15,6 @@ namespace Nodus
   {
     if (!exist_)
       return;
-    using dealii::Utilities::MPI::some_to_some;
     const MPI_Comm          communicator = dof_handler.get_communicator();
     const dealii::IndexSet &owned        = dof_handler.locally_owned_dofs();
     dealii::IndexSet        relevant;

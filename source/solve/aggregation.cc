@@ -4,12 +4,9 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <Epetra_MpiComm.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 
 namespace Nodus
 {
@@ -38,7 +35,8 @@ namespace Nodus
     aggregate(K, modes);
     make_tentative(std::move(modes));
     smooth(K, D_inverse, omega);
-    make_maps();
+    exchange_ = GhostExchange::numbered_through(starts_, ghosts_, nodes_.communicator());
+    ghost_values_.resize(n_modes * ghosts_.size());
   }
 
   /// A node and its neighbours, as long as none of them is taken; the others join a neighbour's aggregate. Bodies do
@@ -114,10 +112,10 @@ namespace Nodus
       if (moves[i] && aggregate_[i] == none)
         start(i);
 
-    const auto         numbers = dealii::Utilities::MPI::all_gather(nodes_.communicator(), n_aggregates_);
-    const unsigned int rank    = dealii::Utilities::MPI::this_mpi_process(nodes_.communicator());
-    first_                     = std::accumulate(numbers.begin(), numbers.begin() + rank, DoFIndex(0));
-    total_                     = std::accumulate(numbers.begin(), numbers.end(), DoFIndex(0));
+    starts_.assign(1, 0);
+    for (const unsigned int n_there : dealii::Utilities::MPI::all_gather(nodes_.communicator(), n_aggregates_))
+      starts_.push_back(starts_.back() + n_there);
+    first_ = starts_[dealii::Utilities::MPI::this_mpi_process(nodes_.communicator())];
   }
 
   /// Gram-Schmidt on the modes of each aggregate; what it takes off are the modes in the coarse unknowns.
@@ -165,25 +163,26 @@ namespace Nodus
     std::vector<Panel> panels(n, Panel{});
     for (unsigned int m = 0; m < n_modes; ++m)
     {
-      const double *mode = nodes_.with_ghosts(tentative_.data() + m * dim * n_owned);
-      for (unsigned int i = 0; i < dim * n; ++i)
-        panels[i / dim].row[i % dim][m] = mode[i];
+      const NodeValues mode = nodes_.with_ghosts(tentative_.data() + m * dim * n_owned);
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int c = 0; c < dim; ++c)
+          panels[i].row[c][m] = mode[i][c];
     }
     std::vector<double> numbers(dim * n_owned + 1, -1.);
     for (unsigned int i = 0; i < n_owned; ++i)
       if (aggregate_[i] != none)
         numbers[dim * i] = first_ + aggregate_[i];
-    const double *number = nodes_.with_ghosts(numbers.data());
+    const NodeValues number = nodes_.with_ghosts(numbers.data());
     for (unsigned int i = n_owned; i < n; ++i)
-      if (number[dim * i] >= 0.)
-        ghosts_.push_back(static_cast<DoFIndex>(number[dim * i]));
+      if (*number[i] >= 0.)
+        ghosts_.push_back(static_cast<DoFIndex>(*number[i]));
     std::sort(ghosts_.begin(), ghosts_.end());
     ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end()), ghosts_.end());
     aggregate_.resize(n, none);
     for (unsigned int i = n_owned; i < n; ++i)
-      if (number[dim * i] >= 0.)
+      if (*number[i] >= 0.)
         aggregate_[i] =
-            n_aggregates_ + (std::lower_bound(ghosts_.begin(), ghosts_.end(), number[dim * i]) - ghosts_.begin());
+            n_aggregates_ + (std::lower_bound(ghosts_.begin(), ghosts_.end(), *number[i]) - ghosts_.begin());
     tentative_ = std::vector<double>();
 
     SparseRow row;
@@ -225,25 +224,6 @@ namespace Nodus
       start_.push_back(column_.size());
     }
     blocks_.resize(blocks_.size() + 2, 0.F); // for load()
-  }
-
-  void Aggregation::make_maps()
-  {
-    row_map_ = std::make_unique<Epetra_Map>(static_cast<int>(n_modes * total_),
-                                            static_cast<int>(n_modes * n_aggregates_),
-                                            0,
-                                            Epetra_MpiComm(nodes_.communicator()));
-    std::vector<int> columns;
-    for (unsigned int a = 0; a < n_aggregates_ + ghosts_.size(); ++a)
-      for (unsigned int m = 0; m < n_modes; ++m)
-        columns.push_back(n_modes * global_aggregate(a) + m);
-    column_map_ =
-        std::make_unique<Epetra_Map>(-1, static_cast<int>(columns.size()), columns.data(), 0, row_map_->Comm());
-    if (dealii::Utilities::MPI::max(ghosts_.empty() ? 0 : 1, nodes_.communicator()) != 0)
-    {
-      import_ = std::make_unique<Epetra_Import>(*column_map_, *row_map_);
-      values_ = std::make_unique<Epetra_MultiVector>(*column_map_, 1);
-    }
   }
 
   /// Rows of P at the ghosts of A, by global aggregate.
@@ -303,6 +283,12 @@ namespace Nodus
       return found - columns.begin();
     };
 
+    // blocks of P at the ghosts of A, by local column
+    std::vector<std::vector<std::pair<unsigned int, const float *>>> at_ghosts(ghost_rows.size());
+    for (unsigned int g = 0; g < ghost_rows.size(); ++g)
+      for (const auto &entry : ghost_rows[g])
+        at_ghosts[g].emplace_back(column(entry.first), entry.second.data());
+
     std::vector<CoarseRow> rows(n_known);
     SparseRow              product;
     product.reinit(columns.size());
@@ -318,8 +304,8 @@ namespace Nodus
                      for (std::uint32_t k = start_[j]; k < start_[j + 1]; ++k)
                        add_product(block, transposed, load(&blocks_[block_size * std::size_t(k)]), product[column_[k]]);
                    else
-                     for (const auto &entry : ghost_rows[j - n_owned])
-                       add_product(block, transposed, load(entry.second.data()), product[column(entry.first)]);
+                     for (const auto &[a, p] : at_ghosts[j - n_owned])
+                       add_product(block, transposed, load(p), product[a]);
                  });
       for (unsigned int l = 0; l < product.columns().size(); ++l)
       {
@@ -332,39 +318,33 @@ namespace Nodus
       }
       product.clear();
     }
-    return Nodus::make_coarse_matrix(std::move(rows), first_, total_, ghosts_, nodes_.communicator());
+    return Nodus::make_coarse_matrix(std::move(rows), starts_, ghosts_, nodes_.communicator());
   }
 
   void Aggregation::restrict_to(double *const coarse, const double *const fine) const
   {
-    double *const values = import_ ? (*values_)[0] : coarse;
-    std::fill_n(values, n_modes * (n_aggregates_ + ghosts_.size()), 0.);
+    std::fill_n(coarse, n_modes * n_aggregates_, 0.);
+    std::fill(ghost_values_.begin(), ghost_values_.end(), 0.);
+    double *const ghosts = ghost_values_.data();
     for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
       for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
       {
         const float *const p = blocks_.data() + block_size * std::size_t(k);
         __builtin_prefetch(p + block_size * ahead);
-        Modes sum = Modes::load(values + n_modes * column_[k]);
+        const std::uint32_t a      = column_[k];
+        double *const       values = a < n_aggregates_ ? coarse + n_modes * a : ghosts + n_modes * (a - n_aggregates_);
+        Modes               sum    = Modes::load(values);
         for (unsigned int c = 0; c < dim; ++c)
           sum.add_product(Modes::load(p + n_modes * c), fine[dim * i + c]);
-        sum.store(values + n_modes * column_[k]);
+        sum.store(values);
       }
-    if (import_)
-    {
-      Epetra_MultiVector view(View, *row_map_, coarse, n_modes * n_aggregates_, 1);
-      view.PutScalar(0.);
-      view.Export(*values_, *import_, Add);
-    }
+    exchange_.add(ghosts, coarse, n_modes);
   }
 
   void Aggregation::add_prolongation(double *const fine, const double *const coarse) const
   {
-    if (import_)
-    {
-      const Epetra_MultiVector view(View, *row_map_, const_cast<double *>(coarse), n_modes * n_aggregates_, 1);
-      values_->Import(view, *import_, Insert);
-    }
-    const double *const values = import_ ? (*values_)[0] : coarse;
+    exchange_.fetch(coarse, ghost_values_.data(), n_modes);
+    const double *const ghosts = ghost_values_.data();
     for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
     {
       Modes sum[dim] = {};
@@ -372,7 +352,8 @@ namespace Nodus
       {
         const float *const p = blocks_.data() + block_size * std::size_t(k);
         __builtin_prefetch(p + block_size * ahead);
-        const Modes x = Modes::load(values + n_modes * column_[k]);
+        const std::uint32_t a = column_[k];
+        const Modes x = Modes::load(a < n_aggregates_ ? coarse + n_modes * a : ghosts + n_modes * (a - n_aggregates_));
         for (unsigned int c = 0; c < dim; ++c)
           sum[c].add_product(Modes::load(p + n_modes * c), x);
       }

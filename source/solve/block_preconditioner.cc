@@ -1,7 +1,6 @@
 #include <nodus/solve/block_preconditioner.h>
 
 #include <Eigen/Dense>
-#include <Epetra_Map.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +16,7 @@ namespace Nodus
                                            const double               augmentation_factor,
                                            const std::vector<Point>  &node_positions)
       : system_(system)
-      , multiplier_part_(std::make_unique<Epetra_MultiVector>(system.B().RowMap(), 1))
+      , multiplier_part_(3 * system.slave_nodes().size())
   {
     augmented_rhs_.reinit(system.displacement_ownership().owned(), system.bulk().map().communicator());
     make_multiplier_blocks(augmentation_factor);
@@ -29,21 +28,22 @@ namespace Nodus
 
   void BlockPreconditioner::make_multiplier_blocks(const double augmentation_factor)
   {
-    const Epetra_CrsMatrix &C = system_.C();
-    D_inverse_.resize(C.NumMyRows() / 3);
+    const CouplingMatrix &C                = system_.C();
+    const DoFIndex        first_multiplier = system_.multiplier_ownership().begin();
+    D_inverse_.resize(system_.slave_nodes().size());
     for (unsigned int node = 0; node < D_inverse_.size(); ++node)
     {
       Block C_node = Block::Zero(), regularisation = Block::Zero();
       for (unsigned int a = 0; a < 3; ++a)
       {
         const int row = 3 * node + a;
-        int       length;
-        double   *values;
-        int      *columns;
-        C.ExtractMyRowView(row, length, values, columns);
-        for (int k = 0; k < length; ++k)
-          if (const int b = C.GCID(columns[k]) - C.GRID(3 * node); b >= 0 && b < 3)
-            C_node(a, b) += values[k];
+        C.for_row(row,
+                  [&](const unsigned int column, const double value)
+                  {
+                    const DoFIndex multiplier = C.columns()[column];
+                    if (multiplier / 3 == first_multiplier / 3 + node)
+                      C_node(a, multiplier % 3) += value;
+                  });
         regularisation(a, a) = system_.stiffness()[row] / augmentation_factor;
         if (regularisation(a, a) == 0. && C_node.row(a).isZero(0.)) // a void multiplier
           regularisation(a, a) = 1.;
@@ -58,54 +58,49 @@ namespace Nodus
 
   void BlockPreconditioner::make_augmented_matrix()
   {
-    const Epetra_CrsMatrix &B = system_.B();
+    const CouplingMatrix &B         = system_.B();
+    const unsigned int    n_columns = B.columns().size();
 
     // For every displacement (local column of B), the slave nodes whose rows hold it.
-    std::vector<std::vector<int>> nodes_of_column(B.NumMyCols());
+    std::vector<std::vector<unsigned int>> nodes_of_column(n_columns);
     // Per node, its columns and the three coefficients of each.
-    std::vector<std::vector<int>> columns_of_node(D_inverse_.size());
-    std::vector<Eigen::Matrix3Xd> rows_of_node(D_inverse_.size());
-    std::vector<int>              position(B.NumMyCols(), -1);
+    std::vector<std::vector<unsigned int>> columns_of_node(D_inverse_.size());
+    std::vector<Eigen::Matrix3Xd>          rows_of_node(D_inverse_.size());
+    std::vector<int>                       position(n_columns, -1);
     for (unsigned int node = 0; node < D_inverse_.size(); ++node)
     {
-      std::vector<int> &node_columns = columns_of_node[node];
-      int               length;
-      double           *values;
-      int              *columns;
+      std::vector<unsigned int> &node_columns = columns_of_node[node];
       for (unsigned int a = 0; a < 3; ++a)
-      {
-        B.ExtractMyRowView(3 * node + a, length, values, columns);
-        for (int k = 0; k < length; ++k)
-          if (position[columns[k]] < 0)
-          {
-            position[columns[k]] = node_columns.size();
-            node_columns.push_back(columns[k]);
-            nodes_of_column[columns[k]].push_back(node);
-          }
-      }
+        B.for_row(3 * node + a,
+                  [&](const unsigned int column, const double)
+                  {
+                    if (position[column] >= 0)
+                      return;
+                    position[column] = node_columns.size();
+                    node_columns.push_back(column);
+                    nodes_of_column[column].push_back(node);
+                  });
       rows_of_node[node] = Eigen::Matrix3Xd::Zero(3, node_columns.size());
       for (unsigned int a = 0; a < 3; ++a)
-      {
-        B.ExtractMyRowView(3 * node + a, length, values, columns);
-        for (int k = 0; k < length; ++k)
-          rows_of_node[node](a, position[columns[k]]) = values[k];
-      }
-      for (const int c : node_columns)
+        B.for_row(3 * node + a,
+                  [&](const unsigned int column, const double value)
+                  { rows_of_node[node](a, position[column]) = value; });
+      for (const unsigned int c : node_columns)
         position[c] = -1;
     }
 
     // B^T D^-1 B, row by row, so that the contributions of several nodes are added before they travel.
-    std::vector<MatrixEntry> entries = system_.displacement_entries();
-    std::vector<double>      sum(B.NumMyCols(), 0.);
-    std::vector<int>         touched;
-    for (int row = 0; row < B.NumMyCols(); ++row)
+    std::vector<MatrixEntry>  entries = system_.displacement_entries();
+    std::vector<double>       sum(n_columns, 0.);
+    std::vector<unsigned int> touched;
+    for (unsigned int row = 0; row < n_columns; ++row)
     {
-      for (const int node : nodes_of_column[row])
+      for (const unsigned int node : nodes_of_column[row])
       {
-        const std::vector<int> &columns = columns_of_node[node];
-        const Eigen::Matrix3Xd &rows    = rows_of_node[node];
-        const auto              here    = std::find(columns.begin(), columns.end(), row) - columns.begin();
-        const Eigen::Vector3d   factor  = Eigen::Map<const Block>(D_inverse_[node].data()) * rows.col(here);
+        const std::vector<unsigned int> &columns = columns_of_node[node];
+        const Eigen::Matrix3Xd          &rows    = rows_of_node[node];
+        const auto                       here    = std::find(columns.begin(), columns.end(), row) - columns.begin();
+        const Eigen::Vector3d            factor  = Eigen::Map<const Block>(D_inverse_[node].data()) * rows.col(here);
         for (unsigned int k = 0; k < columns.size(); ++k)
         {
           if (position[columns[k]] < 0)
@@ -116,9 +111,9 @@ namespace Nodus
           sum[columns[k]] += factor.dot(rows.col(k));
         }
       }
-      for (const int c : touched)
+      for (const unsigned int c : touched)
       {
-        entries.push_back({static_cast<DoFIndex>(B.GCID(row)), static_cast<DoFIndex>(B.GCID(c)), sum[c]});
+        entries.push_back({B.columns()[row], B.columns()[c], sum[c]});
         sum[c]      = 0.;
         position[c] = -1;
       }
@@ -130,29 +125,29 @@ namespace Nodus
         std::make_unique<CorrectedMatrix>(system_.bulk(), std::vector<char>(system_.bulk().map().size(), 0), entries);
   }
 
-  void BlockPreconditioner::apply_multiplier_blocks(Epetra_MultiVector &m) const
+  void BlockPreconditioner::apply_multiplier_blocks(double *const m) const
   {
     for (std::size_t node = 0; node < D_inverse_.size(); ++node)
     {
-      Eigen::Map<Eigen::Vector3d> values(m[0] + 3 * node);
+      Eigen::Map<Eigen::Vector3d> values(m + 3 * node);
       values = (Eigen::Map<const Block>(D_inverse_[node].data()) * values).eval();
     }
   }
 
   void BlockPreconditioner::vmult(BlockVector &dst, const BlockVector &src) const
   {
-    Epetra_MultiVector &m = *multiplier_part_;
-    m                     = src.block(1).trilinos_vector();
-    apply_multiplier_blocks(m);
-    Epetra_MultiVector &f = augmented_rhs_.trilinos_vector();
-    f                     = src.block(0).trilinos_vector();
-    add_transposed_product(system_.B(), 1., m, f);
+    const double *const g = src.block(1).trilinos_vector()[0];
+    std::copy_n(g, multiplier_part_.size(), multiplier_part_.begin());
+    apply_multiplier_blocks(multiplier_part_.data());
+    augmented_rhs_ = src.block(0);
+    system_.B().add_transposed_product(multiplier_part_.data(), augmented_rhs_.trilinos_vector()[0]);
 
     multigrid_->vmult(dst.block(0), augmented_rhs_);
 
-    Epetra_MultiVector &result = dst.block(1).trilinos_vector();
-    system_.B().Multiply(false, dst.block(0).trilinos_vector(), result);
-    result.Update(-1., src.block(1).trilinos_vector(), 1.);
-    apply_multiplier_blocks(result);
+    double *const m = dst.block(1).trilinos_vector()[0];
+    for (std::size_t i = 0; i < multiplier_part_.size(); ++i)
+      m[i] = -g[i];
+    system_.B().add_product(dst.block(0).trilinos_vector()[0], m);
+    apply_multiplier_blocks(m);
   }
 } // namespace Nodus

@@ -1,9 +1,9 @@
 #include <nodus/solve/coarse_matrix.h>
-#include <nodus/solve/saddle_point_operator.h>
+#include <nodus/some_to_some.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/mpi.templates.h>
 
+#include <algorithm>
 #include <map>
 
 namespace Nodus
@@ -15,16 +15,16 @@ namespace Nodus
     /// Hands the rows behind the owned ones to their owners.
     void gather(std::vector<CoarseRow>      &rows,
                 const DoFIndex               first,
+                const std::vector<DoFIndex> &starts,
                 const std::vector<DoFIndex> &ghosts,
-                const dealii::IndexSet      &owned,
                 const MPI_Comm               communicator)
     {
       const unsigned int                          n_owned = rows.size() - ghosts.size();
-      const Ownership                             ownership(owned, communicator);
       std::map<unsigned int, std::vector<double>> outgoing; // row, column, block
       for (unsigned int g = 0; g < ghosts.size(); ++g)
       {
-        std::vector<double> &numbers = outgoing[ownership.owner(n_modes * ghosts[g])];
+        const unsigned int   owner   = std::upper_bound(starts.begin(), starts.end(), ghosts[g]) - starts.begin() - 1;
+        std::vector<double> &numbers = outgoing[owner];
         rows[n_owned + g].for_each(
             [&](const DoFIndex column, const CoarseRow::Block &block)
             {
@@ -34,7 +34,7 @@ namespace Nodus
             });
       }
       rows.resize(n_owned);
-      for (const auto &[rank, numbers] : dealii::Utilities::MPI::some_to_some(communicator, outgoing))
+      for (const auto &[rank, numbers] : some_to_some(communicator, outgoing))
         for (auto p = numbers.begin(); p != numbers.end();)
         {
           CoarseRow        &row   = rows[static_cast<DoFIndex>(*p++) - first];
@@ -59,16 +59,15 @@ namespace Nodus
   } // namespace
 
   std::unique_ptr<NodeMatrix> make_coarse_matrix(std::vector<CoarseRow>       rows,
-                                                 const DoFIndex               first,
-                                                 const DoFIndex               n_aggregates,
+                                                 const std::vector<DoFIndex> &starts,
                                                  const std::vector<DoFIndex> &ghosts,
                                                  const MPI_Comm               communicator)
   {
     const unsigned int n_owned = rows.size() - ghosts.size();
-    dealii::IndexSet   owned(n_modes * n_aggregates);
+    const DoFIndex     first   = starts[dealii::Utilities::MPI::this_mpi_process(communicator)];
+    dealii::IndexSet   owned(n_modes * starts.back());
     owned.add_range(n_modes * first, n_modes * (first + n_owned));
-    if (dealii::Utilities::MPI::max(ghosts.empty() ? 0 : 1, communicator) != 0)
-      gather(rows, first, ghosts, owned, communicator);
+    gather(rows, first, starts, ghosts, communicator);
     fill_diagonal(rows, first, communicator);
 
     std::vector<DoFIndex> ghost_nodes;
@@ -131,7 +130,8 @@ namespace Nodus
       matrix.for_row(i, [&](const unsigned int, const double *, const bool) { length[dim * i] += dim; });
       std::fill_n(&length[dim * i], dim, length[dim * i]);
     }
-    auto                result = std::make_unique<Epetra_CrsMatrix>(Copy, nodes.row_map(), length.data(), true);
+    const Epetra_Map    rows   = nodes.dof_map();
+    auto                result = std::make_unique<Epetra_CrsMatrix>(Copy, rows, length.data(), true);
     std::vector<int>    columns;
     std::vector<double> values;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
@@ -151,7 +151,7 @@ namespace Nodus
         result->InsertGlobalValues(
             static_cast<int>(dim * nodes.global(i) + c), columns.size(), values.data(), columns.data());
       }
-    result->FillComplete(nodes.row_map(), nodes.row_map());
+    result->FillComplete(rows, rows);
     return result;
   }
 } // namespace Nodus

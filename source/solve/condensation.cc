@@ -19,9 +19,9 @@ namespace Nodus
   Condensation::Condensation(const SaddlePointOperator &system)
       : system_(system)
       , nodes_(system.bulk().map())
-      , u_(nodes_.row_map(), 1)
-      , f_(nodes_.row_map(), 1)
-      , multiplier_(system.B().RowMap(), 1)
+      , u_(dim * nodes_.n_owned())
+      , f_(dim * nodes_.n_owned())
+      , multiplier_(3 * system.slave_nodes().size())
   {
     rows_.resize(nodes_.size());
     make_sites();
@@ -36,8 +36,9 @@ namespace Nodus
 
   void Condensation::make_sites()
   {
-    const Epetra_CrsMatrix &B = system_.B(), &C = system_.C();
-    std::string             failure;
+    const CouplingMatrix &B = system_.B(), &C = system_.C();
+    const DoFIndex        first_multiplier = system_.multiplier_ownership().begin();
+    std::string           failure;
     sites_.resize(system_.slave_nodes().size());
     for (unsigned int k = 0; k < sites_.size() && failure.empty(); ++k)
     {
@@ -48,21 +49,23 @@ namespace Nodus
       blocks[system_.slave_nodes()[k]].setZero();
       for (unsigned int a = 0; a < 3; ++a)
       {
-        int     length;
-        double *values;
-        int    *columns;
-        C.ExtractMyRowView(3 * k + a, length, values, columns);
-        for (int l = 0; l < length; ++l)
-          if (const int b = C.GCID(columns[l]) - C.GRID(3 * k); b >= 0 && b < 3)
-            C_node(a, b) += values[l];
-          else if (values[l] != 0.)
-            failure = "the multipliers of different slave nodes are coupled";
-        B.ExtractMyRowView(3 * k + a, length, values, columns);
-        for (int l = 0; l < length; ++l)
-        {
-          const DoFIndex dof = B.GCID(columns[l]);
-          blocks.try_emplace(dof / dim, Matrix3::Zero()).first->second(a, dof % dim) += values[l];
-        }
+        C.for_row(3 * k + a,
+                  [&](const unsigned int column, const double value)
+                  {
+                    // as signed numbers: the multiplier may be of a node before this one
+                    const auto b = static_cast<std::int64_t>(C.columns()[column]) -
+                                   static_cast<std::int64_t>(first_multiplier + 3 * k);
+                    if (b >= 0 && b < 3)
+                      C_node(a, b) += value;
+                    else if (value != 0.)
+                      failure = "the multipliers of different slave nodes are coupled";
+                  });
+        B.for_row(3 * k + a,
+                  [&](const unsigned int column, const double value)
+                  {
+                    const DoFIndex dof = B.columns()[column];
+                    blocks.try_emplace(dof / dim, Matrix3::Zero()).first->second(a, dof % dim) += value;
+                  });
       }
       const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(C_node);
       site.turn = eigen.eigenvectors();
@@ -255,67 +258,70 @@ namespace Nodus
           add(other.node, other.block);
       }
     }
-    T_ = std::make_unique<CouplingMatrix>(entries, nodes_.row_map(), nodes_.row_map());
+    const Ownership &ownership = system_.displacement_ownership();
+    T_                         = std::make_unique<CouplingMatrix>(entries, ownership, ownership);
   }
 
-  void Condensation::apply_stiffness(Epetra_MultiVector &m) const
+  void Condensation::apply_stiffness(double *const m) const
   {
     for (unsigned int k = 0; k < sites_.size(); ++k)
     {
-      Eigen::Map<Eigen::Vector3d> values(m[0] + 3 * k);
+      Eigen::Map<Eigen::Vector3d> values(m + 3 * k);
       const Site                 &site = sites_[k];
       values = (site.turn * site.flexibility_inverse.asDiagonal() * (site.turn.transpose() * values)).eval();
     }
   }
 
-  void Condensation::add_springs(const Epetra_MultiVector &u, Epetra_MultiVector &f) const
+  void Condensation::add_springs(const double *const u, double *const f) const
   {
-    system_.B().Multiply(false, u, multiplier_);
-    apply_stiffness(multiplier_);
-    add_transposed_product(system_.B(), 1., multiplier_, f);
+    std::fill(multiplier_.begin(), multiplier_.end(), 0.);
+    system_.B().add_product(u, multiplier_.data());
+    apply_stiffness(multiplier_.data());
+    system_.B().add_transposed_product(multiplier_.data(), f);
   }
 
-  void Condensation::take_out(Epetra_MultiVector &v) const
+  void Condensation::take_out(double *const v) const
   {
     for (const unsigned int i : replaced_)
       if (i < nodes_.n_owned())
-        std::fill_n(v[0] + dim * i, dim, 0.);
+        std::fill_n(v + dim * i, dim, 0.);
   }
 
-  void Condensation::apply_transformation(const Epetra_MultiVector &y, Epetra_MultiVector &u) const
+  void Condensation::apply_transformation(const double *const y, double *const u) const
   {
-    u.Update(1., y, 0.);
+    std::copy_n(y, u_.size(), u);
     take_out(u);
     T_->add_product(y, u);
   }
 
-  void Condensation::apply_transposed(const Epetra_MultiVector &f, Epetra_MultiVector &y) const
+  void Condensation::apply_transposed(const double *const f, double *const y) const
   {
-    y.Update(1., f, 0.);
+    std::copy_n(f, f_.size(), y);
     take_out(y);
     T_->add_transposed_product(f, y);
   }
 
   void Condensation::vmult(Vector &y, const Vector &x) const
   {
-    Epetra_MultiVector &result = y.trilinos_vector();
-    apply_transformation(x.trilinos_vector(), u_);
-    system_.apply_stiffness(u_, f_);
-    add_springs(u_, f_);
-    apply_transposed(f_, result);
+    double *const       result = y.trilinos_vector()[0];
+    const double *const given  = x.trilinos_vector()[0];
+    apply_transformation(given, u_.data());
+    system_.apply_stiffness(u_.data(), f_.data());
+    add_springs(u_.data(), f_.data());
+    apply_transposed(f_.data(), result);
     for (const auto &[i, diagonal] : eliminated_)
-      result[0][i] = diagonal * x.trilinos_vector()[0][i];
+      result[i] = diagonal * given[i];
   }
 
   void Condensation::condense(const BlockVector &b, Vector &rhs)
   {
-    particular_.reinit(b.block(0));
+    const double *const f_b = b.block(0).trilinos_vector()[0], *const g_b = b.block(1).trilinos_vector()[0];
+    particular_.assign(dim * nodes_.n_owned(), 0.);
     std::vector<Eigen::Vector3d> y(sites_.size(), Eigen::Vector3d::Zero());
     for (unsigned int k = 0; k < sites_.size(); ++k)
     {
       const Site           &site = sites_[k];
-      const Eigen::Vector3d g =
-          site.turn.transpose() * Eigen::Map<const Eigen::Vector3d>(b.block(1).trilinos_vector()[0] + 3 * k);
+      const Eigen::Vector3d g    = site.turn.transpose() * Eigen::Map<const Eigen::Vector3d>(g_b + 3 * k);
       for (unsigned int d = 0; d < site.n_constraints; ++d)
         y[k][d] = g[site.combination[d]];
       if (!site.coupled)
@@ -323,47 +329,51 @@ namespace Nodus
     }
     if (cluster_)
       solve_cluster(y, false);
-    Epetra_MultiVector &u_g = particular_.trilinos_vector();
     for (unsigned int k = 0; k < sites_.size(); ++k)
     {
       const Eigen::Vector3d u = sites_[k].basis * y[k];
       for (unsigned int c = 0; c < dim && sites_[k].n_constraints > 0; ++c)
-        u_g[0][dim * sites_[k].node + c] = u[c];
+        particular_[dim * sites_[k].node + c] = u[c];
     }
 
-    system_.bulk().vmult_columns(f_[0], u_g[0], replaced_);
-    system_.add_coupling(u_g, f_);
-    add_springs(u_g, f_);
-    multiplier_ = b.block(1).trilinos_vector();
-    apply_stiffness(multiplier_);
-    f_.Update(1., b.block(0).trilinos_vector(), -1.);
-    add_transposed_product(system_.B(), 1., multiplier_, f_);
-    rhs.reinit(b.block(0));
-    apply_transposed(f_, rhs.trilinos_vector());
+    const double *const u_g = particular_.data();
+    system_.bulk().vmult_columns(f_.data(), u_g, replaced_);
+    system_.add_coupling(u_g, f_.data());
+    add_springs(u_g, f_.data());
+    std::copy_n(g_b, multiplier_.size(), multiplier_.begin());
+    apply_stiffness(multiplier_.data());
+    for (std::size_t i = 0; i < f_.size(); ++i)
+      f_[i] = f_b[i] - f_[i];
+    system_.B().add_transposed_product(multiplier_.data(), f_.data());
+    double *const condensed = rhs.trilinos_vector()[0];
+    apply_transposed(f_.data(), condensed);
     for (const auto &[i, diagonal] : eliminated_)
-      rhs.trilinos_vector()[0][i] = 0.;
+      condensed[i] = 0.;
   }
 
   void Condensation::expand(const Vector &y, const BlockVector &b, BlockVector &x) const
   {
-    Epetra_MultiVector       &u = x.block(0).trilinos_vector(), &m = x.block(1).trilinos_vector();
-    const Epetra_MultiVector &g = b.block(1).trilinos_vector();
-    apply_transformation(y.trilinos_vector(), u);
-    u.Update(1., particular_.trilinos_vector(), 1.);
+    double *const u = x.block(0).trilinos_vector()[0], *const m = x.block(1).trilinos_vector()[0];
+    const double *const f_b = b.block(0).trilinos_vector()[0], *const g_b = b.block(1).trilinos_vector()[0];
+    apply_transformation(y.trilinos_vector()[0], u);
+    for (std::size_t i = 0; i < u_.size(); ++i)
+      u[i] += particular_[i];
 
     // m = D (B u - g), and what is left of equilibrium goes to the constraints
-    system_.bulk().vmult_rows(f_[0], u[0], replaced_);
-    system_.add_coupling(u, f_);
-    system_.B().Multiply(false, u, m);
-    m.Update(-1., g, 1.);
+    system_.bulk().vmult_rows(f_.data(), u, replaced_);
+    system_.add_coupling(u, f_.data());
+    for (std::size_t i = 0; i < multiplier_.size(); ++i)
+      m[i] = -g_b[i];
+    system_.B().add_product(u, m);
     apply_stiffness(m);
-    f_.Update(1., b.block(0).trilinos_vector(), -1.);
-    add_transposed_product(system_.B(), -1., m, f_);
+    for (std::size_t i = 0; i < f_.size(); ++i)
+      f_[i] = f_b[i] - f_[i];
+    system_.B().add_transposed_product(m, f_.data(), -1.);
     std::vector<Eigen::Vector3d> force(sites_.size(), Eigen::Vector3d::Zero());
     for (unsigned int k = 0; k < sites_.size(); ++k)
     {
       const Site &site = sites_[k];
-      force[k]         = site.basis.transpose() * Eigen::Map<const Eigen::Vector3d>(f_[0] + dim * site.node);
+      force[k]         = site.basis.transpose() * Eigen::Map<const Eigen::Vector3d>(f_.data() + dim * site.node);
       if (!site.coupled)
         force[k] = (constraint_inverse(site, site.n_constraints).transpose() * force[k]).eval();
     }
@@ -371,7 +381,7 @@ namespace Nodus
       solve_cluster(force, true);
     for (unsigned int k = 0; k < sites_.size(); ++k)
       for (unsigned int d = 0; d < sites_[k].n_constraints; ++d)
-        Eigen::Map<Eigen::Vector3d>(m[0] + 3 * k) += force[k][d] * sites_[k].turn.col(sites_[k].combination[d]);
+        Eigen::Map<Eigen::Vector3d>(m + 3 * k) += force[k][d] * sites_[k].turn.col(sites_[k].combination[d]);
   }
 
   void Condensation::transform_modes(std::vector<double> &modes) const

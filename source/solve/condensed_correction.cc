@@ -1,7 +1,7 @@
 #include <nodus/solve/condensation.h>
+#include <nodus/some_to_some.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/mpi.templates.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -107,7 +107,7 @@ namespace Nodus
             numbers.push_back(column);
             numbers.insert(numbers.end(), block.data(), block.data() + 9);
           });
-      for (const auto &[rank, numbers] : dealii::Utilities::MPI::some_to_some(nodes.communicator(), outgoing))
+      for (const auto &[rank, numbers] : some_to_some(nodes.communicator(), outgoing))
         for (auto p = numbers.begin(); p != numbers.end(); p += 11)
           sum(static_cast<DoFIndex>(p[0]), static_cast<DoFIndex>(p[1])) += Eigen::Map<const Matrix3>(&p[2]);
     }

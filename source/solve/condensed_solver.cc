@@ -26,15 +26,16 @@ namespace Nodus
     class CondensedCycle
     {
     public:
-      CondensedCycle(Condensation &condensation, const Multigrid &multigrid)
+      CondensedCycle(Condensation &condensation, const Multigrid &multigrid, const BlockVector &b)
           : condensation_(condensation)
           , multigrid_(multigrid)
+          , rhs_(b.block(0))
+          , y_(b.block(0))
       {
       }
       void vmult(BlockVector &x, const BlockVector &b) const
       {
         condensation_.condense(b, rhs_);
-        y_.reinit(rhs_, true);
         multigrid_.vmult(y_, rhs_);
         condensation_.expand(y_, b, x);
       }
@@ -119,7 +120,7 @@ namespace Nodus
                                       const double               tolerance,
                                       BlockVector               &x) const
   {
-    const CondensedCycle cycle(condensation, *multigrid_);
+    const CondensedCycle cycle(condensation, *multigrid_, b);
     const KrylovReport   report = left_gmres(
         matrix,
         [&](BlockVector &z, const BlockVector &r) { cycle.vmult(z, r); },
@@ -141,7 +142,7 @@ namespace Nodus
     x = 0.;
     if (!matrix.symmetric())
       return gmres(matrix, condensation, b, tolerance, x);
-    Vector rhs, y;
+    Vector rhs(b.block(0)), y;
     condensation.condense(b, rhs);
     y.reinit(rhs);
     const unsigned int n = rhs.l2_norm() > 0. ? conjugate_gradients(condensation, rhs, tolerance, y) : 0;

@@ -73,7 +73,7 @@ namespace Nodus
 
   void CorrectedMatrix::vmult(double *const y, const double *const x_owned) const
   {
-    const double *const x = nodes_.with_ghosts(x_owned);
+    const NodeValues x = nodes_.with_ghosts(x_owned);
     pattern_->vmult(stiffness_.data(), y, x);
     // rows of a block in vectors of four, as in NodePattern::vmult()
     typedef double Lanes __attribute__((vector_size(32)));
@@ -90,7 +90,7 @@ namespace Nodus
       const float *a        = values_.data() + 9 * std::size_t(start_[i]);
       for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k, a += 9)
       {
-        const double *const xj = x + dim * column_[k];
+        const double *const xj = x[column_[k]];
         const Lanes         xk = {xj[0], xj[1], xj[2], 0.};
         for (unsigned int c = 0; c < dim; ++c)
           sum[c] += row(a + dim * c) * xk;

@@ -1,90 +1,105 @@
 #include <nodus/solve/coupling_matrix.h>
 
-#include <Epetra_Import.h>
-#include <Epetra_Map.h>
+#include <deal.II/base/mpi.h>
 
 #include <algorithm>
 
 namespace Nodus
 {
-  std::unique_ptr<Epetra_CrsMatrix>
-  make_matrix(const std::vector<MatrixEntry> &entries, const Epetra_Map &range, const Epetra_Map &domain)
-  {
-    std::vector<int>    length(std::max(1, range.NumMyElements()), 0), columns(entries.size());
-    std::vector<double> values(entries.size());
-    for (std::size_t k = 0; k < entries.size(); ++k)
-    {
-      ++length[range.LID(static_cast<int>(entries[k].row))];
-      columns[k] = entries[k].column;
-      values[k]  = entries[k].value;
-    }
-    auto        matrix = std::make_unique<Epetra_CrsMatrix>(Copy, range, length.data(), true);
-    std::size_t k      = 0;
-    while (k < entries.size())
-    {
-      const int row = entries[k].row, n = length[range.LID(row)];
-      matrix->InsertGlobalValues(row, n, values.data() + k, columns.data() + k);
-      k += n;
-    }
-    matrix->FillComplete(domain, range);
-    return matrix;
-  }
-
-  void add_transposed_product(const Epetra_CrsMatrix   &A,
-                              const double              factor,
-                              const Epetra_MultiVector &x,
-                              Epetra_MultiVector       &y)
-  {
-    const Epetra_Import *const import = A.Importer(); // null where columns and domain are the same
-    Epetra_MultiVector         columns(A.ColMap(), 1);
-    double *const              sum = import ? columns[0] : y[0];
-    for (int i = 0; i < A.NumMyRows(); ++i)
-    {
-      int     length;
-      double *values;
-      int    *column;
-      A.ExtractMyRowView(i, length, values, column);
-      const double xi = factor * x[0][i];
-      for (int k = 0; k < length; ++k)
-        sum[column[k]] += values[k] * xi;
-    }
-    if (import)
-      y.Export(columns, *import, Epetra_AddLocalAlso);
-  }
-
-  namespace
-  {
-    Epetra_Map rows_of(const std::vector<MatrixEntry> &entries, const Epetra_Map &range)
-    {
-      std::vector<int> rows;
-      for (const MatrixEntry &e : entries)
-        if (rows.empty() || rows.back() != static_cast<int>(e.row))
-          rows.push_back(e.row);
-      return Epetra_Map(-1, rows.size(), rows.data(), 0, range.Comm());
-    }
-  } // namespace
-
   CouplingMatrix::CouplingMatrix(const std::vector<MatrixEntry> &entries,
-                                 const Epetra_Map               &range,
-                                 const Epetra_Map               &domain)
-      : rows_(make_matrix(entries, rows_of(entries, range), domain))
-      , values_(rows_->RowMap(), 1)
+                                 const Ownership                &range,
+                                 const Ownership                &domain)
+      : communicator_(range.communicator())
   {
-    for (int i = 0; i < rows_->NumMyRows(); ++i)
-      position_.push_back(range.LID(rows_->GRID(i)));
+    std::vector<DoFIndex> used, ghosts;
+    used.reserve(entries.size());
+    for (const MatrixEntry &e : entries)
+      used.push_back(e.column);
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    for (const DoFIndex c : used)
+      if (c >= domain.begin() && c < domain.end())
+      {
+        columns_.push_back(c);
+        position_.push_back(c - domain.begin());
+      }
+      else
+        ghosts.push_back(c);
+    const std::size_t n_owned = columns_.size();
+    columns_.insert(columns_.end(), ghosts.begin(), ghosts.end());
+    at_columns_.resize(columns_.size());
+    exchange_ = GhostExchange::numbered_through(domain.start(), ghosts, communicator_);
+
+    column_.reserve(entries.size());
+    value_.reserve(entries.size());
+    for (const MatrixEntry &e : entries)
+    {
+      if (rows_.empty() || rows_.back() != e.row - range.begin())
+      {
+        rows_.push_back(e.row - range.begin());
+        start_.push_back(column_.size());
+      }
+      const bool owned = e.column >= domain.begin() && e.column < domain.end();
+      const auto begin = columns_.begin() + (owned ? 0 : n_owned), end = owned ? begin + n_owned : columns_.end();
+      column_.push_back(std::lower_bound(begin, end, e.column) - columns_.begin());
+      value_.push_back(e.value);
+    }
+    start_.push_back(column_.size());
   }
 
-  void CouplingMatrix::add_product(const Epetra_MultiVector &x, Epetra_MultiVector &y) const
+  const double *CouplingMatrix::at_columns(const double *const x) const
   {
-    rows_->Multiply(false, x, values_);
-    for (unsigned int i = 0; i < position_.size(); ++i)
-      y[0][position_[i]] += values_[0][i];
+    for (std::size_t c = 0; c < position_.size(); ++c)
+      at_columns_[c] = x[position_[c]];
+    exchange_.fetch(x, at_columns_.data() + position_.size());
+    return at_columns_.data();
   }
 
-  void CouplingMatrix::add_transposed_product(const Epetra_MultiVector &x, Epetra_MultiVector &y) const
+  void CouplingMatrix::add_product(const double *const x, double *const y, const double factor) const
   {
-    for (unsigned int i = 0; i < position_.size(); ++i)
-      values_[0][i] = x[0][position_[i]];
-    Nodus::add_transposed_product(*rows_, 1., values_, y);
+    const double *const values = at_columns(x);
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+    {
+      double sum = 0.;
+      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+        sum += value_[k] * values[column_[k]];
+      y[rows_[i]] += factor * sum;
+    }
+  }
+
+  void CouplingMatrix::add_transposed_product(const double *const x, double *const y, const double factor) const
+  {
+    std::fill(at_columns_.begin(), at_columns_.end(), 0.);
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+    {
+      const double xi = factor * x[rows_[i]];
+      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+        at_columns_[column_[k]] += value_[k] * xi;
+    }
+    for (std::size_t c = 0; c < position_.size(); ++c)
+      y[position_[c]] += at_columns_[c];
+    exchange_.add(at_columns_.data() + position_.size(), y);
+  }
+
+  void CouplingMatrix::scale_rows(const std::vector<double> &factor)
+  {
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+        value_[k] *= factor[rows_[i]];
+  }
+
+  void CouplingMatrix::scale_columns(const std::vector<double> &factor)
+  {
+    const double *const factors = at_columns(factor.data());
+    for (std::size_t k = 0; k < value_.size(); ++k)
+      value_[k] *= factors[column_[k]];
+  }
+
+  double CouplingMatrix::norm_squared() const
+  {
+    double sum = 0.;
+    for (const double value : value_)
+      sum += value * value;
+    return dealii::Utilities::MPI::sum(sum, communicator_);
   }
 } // namespace Nodus

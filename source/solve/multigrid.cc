@@ -1,6 +1,7 @@
 #include <nodus/memory.h>
 #include <nodus/solve/coarse_matrix.h>
 #include <nodus/solve/multigrid.h>
+#include <nodus/wait_for_all.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -20,7 +21,7 @@ namespace Nodus
 
     unsigned int size(const NodeMatrix &matrix)
     {
-      return matrix.map().row_map().NumGlobalElements();
+      return dim * matrix.map().n_global();
     }
   } // namespace
 
@@ -28,22 +29,23 @@ namespace Nodus
   {
     const MPI_Comm    comm = K.map().communicator();
     const std::size_t n    = dim * K.map().n_owned();
+    wait_for_all(comm); // for those that have corrections at the contact
     if (dealii::Utilities::MPI::max(dim * node_positions.size() == n ? 0 : 1, comm) != 0)
       throw SolverFailure("Multigrid: the positions of the nodes do not match the displacements of the system.");
 
+    std::vector<double> least(2 * dim, std::numeric_limits<double>::max()); // of the coordinates and their negatives
+    for (const Point &p : node_positions)
+      for (unsigned int d = 0; d < dim; ++d)
+      {
+        least[d]       = std::min(least[d], p[d]);
+        least[dim + d] = std::min(least[dim + d], -p[d]);
+      }
+    dealii::Utilities::MPI::min(least, comm, least);
     Vector3 centre, extent;
     for (unsigned int d = 0; d < dim; ++d)
     {
-      double lower = std::numeric_limits<double>::max(), upper = std::numeric_limits<double>::lowest();
-      for (const Point &p : node_positions)
-      {
-        lower = std::min(lower, p[d]);
-        upper = std::max(upper, p[d]);
-      }
-      lower     = dealii::Utilities::MPI::min(lower, comm);
-      upper     = dealii::Utilities::MPI::max(upper, comm);
-      centre[d] = .5 * (lower + upper);
-      extent[d] = upper - lower;
+      centre[d] = .5 * (least[d] - least[dim + d]);
+      extent[d] = -least[dim + d] - least[d];
     }
     const double length = extent.norm();
 

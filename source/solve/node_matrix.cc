@@ -1,7 +1,7 @@
 #include <nodus/solve/node_matrix.h>
+#include <nodus/some_to_some.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/mpi.templates.h>
 
 #include <Epetra_MpiComm.h>
 
@@ -32,7 +32,7 @@ namespace Nodus
     end_of_part_.push_back(ghosts_.size());
     for (const unsigned int n : dealii::Utilities::MPI::all_gather(communicator, n_owned_))
       start_.push_back(start_.back() + n);
-    make_maps();
+    make_exchange();
   }
 
   NodeMap::NodeMap(const NodeMap &base, std::vector<DoFIndex> ghosts)
@@ -48,25 +48,19 @@ namespace Nodus
       if (base.local(node) == dealii::numbers::invalid_unsigned_int)
         ghosts_.push_back(node);
     end_of_part_.push_back(ghosts_.size());
-    make_maps();
+    make_exchange();
   }
 
-  void NodeMap::make_maps()
+  void NodeMap::make_exchange()
   {
-    const Epetra_MpiComm comm(communicator_);
-    std::vector<int>     columns;
-    columns.reserve(dim * size());
-    for (unsigned int i = 0; i < size(); ++i)
-      for (unsigned int c = 0; c < dim; ++c)
-        columns.push_back(dim * global(i) + c);
-    row_map_ =
-        std::make_unique<Epetra_Map>(static_cast<int>(dim * start_.back()), static_cast<int>(dim * n_owned_), 0, comm);
-    column_map_ = std::make_unique<Epetra_Map>(-1, static_cast<int>(columns.size()), columns.data(), 0, comm);
-    if (dealii::Utilities::MPI::max(ghosts_.empty() ? 0 : 1, communicator_) != 0)
-    {
-      import_ = std::make_unique<Epetra_Import>(*column_map_, *row_map_);
-      values_ = std::make_unique<Epetra_MultiVector>(*column_map_, 1, false);
-    }
+    exchange_ = GhostExchange::numbered_through(start_, ghosts_, communicator_);
+    ghost_values_.resize(dim * ghosts_.size());
+  }
+
+  Epetra_Map NodeMap::dof_map() const
+  {
+    return Epetra_Map(
+        static_cast<int>(dim * n_global()), static_cast<int>(dim * n_owned_), 0, Epetra_MpiComm(communicator_));
   }
 
   unsigned int NodeMap::local(const DoFIndex node) const
@@ -88,7 +82,6 @@ namespace Nodus
   std::map<DoFIndex, std::vector<double>>
   NodeMap::ask(const std::vector<DoFIndex> &nodes, const std::function<std::vector<double>(unsigned int)> &answer) const
   {
-    using dealii::Utilities::MPI::some_to_some;
     std::map<unsigned int, std::vector<DoFIndex>> questions;
     for (const DoFIndex node : nodes)
       questions[std::upper_bound(start_.begin(), start_.end(), node) - start_.begin() - 1].push_back(node);
@@ -103,13 +96,10 @@ namespace Nodus
     return result;
   }
 
-  const double *NodeMap::with_ghosts(const double *owned) const
+  NodeValues NodeMap::with_ghosts(const double *const owned) const
   {
-    if (!import_)
-      return owned;
-    const Epetra_MultiVector view(View, *row_map_, const_cast<double *>(owned), dim * n_owned_, 1);
-    values_->Import(view, *import_, Insert);
-    return (*values_)[0];
+    exchange_.fetch(owned, ghost_values_.data(), dim);
+    return {owned, ghost_values_.data(), n_owned_};
   }
 
   void NodeMatrix::reinit(std::shared_ptr<const NodeMap>   map,
@@ -210,7 +200,7 @@ namespace Nodus
   }
 
   template <typename Number>
-  void NodePattern::vmult(const Number *a, double *const y, const double *const x) const
+  void NodePattern::vmult(const Number *a, double *const y, const NodeValues &x) const
   {
     // Blocks to be fetched ahead: the rows are too short for the hardware to do it in time. Twice as fast from memory.
     constexpr unsigned int ahead = 128;
@@ -227,13 +217,13 @@ namespace Nodus
     std::fill_n(y, dim * n_owned, 0.);
     for (unsigned int i = 0; i < n_owned; ++i)
     {
-      const double *const xi = x + 3 * i;
+      const double *const xi = x.owned + 3 * i;
       const Lanes         x0 = xi[0] - Lanes{}, x1 = xi[1] - Lanes{}, x2 = xi[2] - Lanes{};
       Lanes               sum[3] = {};
-      const auto          add    = [&](const std::uint32_t j, const bool both)
+      const auto          add    = [&](const double *const values, const std::uint32_t j, const bool both)
       {
         __builtin_prefetch(a + 9 * ahead);
-        const Lanes xj = {x[3 * j], x[3 * j + 1], x[3 * j + 2], 0.};
+        const Lanes xj = {values[3 * j], values[3 * j + 1], values[3 * j + 2], 0.};
         const Lanes a0 = row(a), a1 = row(a + 3), a2 = row(a + 6);
         sum[0] += a0 * xj;
         sum[1] += a1 * xj;
@@ -248,17 +238,17 @@ namespace Nodus
         a += 9;
       };
       std::uint32_t k = start[i];
-      add(column[k++], false);
+      add(x.owned, column[k++], false);
       for (; k < ghosts[i]; ++k)
-        add(column[k], true);
+        add(x.owned, column[k], true);
       for (; k < start[i + 1]; ++k)
-        add(column[k], false);
+        add(x.ghosts, column[k] - n_owned, false);
       for (unsigned int c = 0; c < dim; ++c)
         y[3 * i + c] += sum[c][0] + sum[c][1] + sum[c][2];
     }
   }
-  template void NodePattern::vmult(const double *, double *, const double *) const;
-  template void NodePattern::vmult(const float *, double *, const double *) const;
+  template void NodePattern::vmult(const double *, double *, const NodeValues &) const;
+  template void NodePattern::vmult(const float *, double *, const NodeValues &) const;
 
   namespace
   {
@@ -272,29 +262,29 @@ namespace Nodus
 
   void NodeMatrix::vmult_columns(double *y, const double *x_owned, const std::vector<unsigned int> &nodes) const
   {
-    const double *const x = map_->with_ghosts(x_owned);
+    const NodeValues x = map_->with_ghosts(x_owned);
     std::fill_n(y, dim * map_->n_owned(), 0.);
     const NodePattern &p = *pattern_;
     for (const unsigned int j : nodes)
     {
       for (std::uint32_t k = p.lower_start[j]; k < p.lower_start[j + 1]; ++k)
-        add_product(y + dim * p.lower[k].row, &values_[9 * std::size_t(p.lower[k].block)], false, x + dim * j);
+        add_product(y + dim * p.lower[k].row, &values_[9 * std::size_t(p.lower[k].block)], false, x[j]);
       if (j < map_->n_owned())
         for (std::uint32_t k = p.start[j]; k < p.ghosts[j]; ++k)
-          add_product(y + dim * p.column[k], &values_[9 * std::size_t(k)], true, x + dim * j);
+          add_product(y + dim * p.column[k], &values_[9 * std::size_t(k)], true, x[j]);
     }
   }
 
   void NodeMatrix::vmult_rows(double *y, const double *x_owned, const std::vector<unsigned int> &nodes) const
   {
-    const double *const x = map_->with_ghosts(x_owned);
+    const NodeValues x = map_->with_ghosts(x_owned);
     for (const unsigned int i : nodes)
       if (i < map_->n_owned())
       {
         std::fill_n(y + dim * i, dim, 0.);
         for_row(i,
                 [&](const unsigned int j, const double *block, const bool transposed)
-                { add_product(y + dim * i, block, transposed, x + dim * j); });
+                { add_product(y + dim * i, block, transposed, x[j]); });
       }
   }
 

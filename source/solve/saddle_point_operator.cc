@@ -1,79 +1,14 @@
 #include <nodus/solve/saddle_point_operator.h>
-#include <nodus/wait_for_all.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/mpi.templates.h>
 
-#include <Epetra_Import.h>
-#include <Epetra_Map.h>
-#include <Epetra_Vector.h>
+#include <Epetra_MultiVector.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace Nodus
 {
-  Ownership::Ownership(const dealii::IndexSet &owned, const MPI_Comm communicator)
-      : start_(1, 0)
-      , communicator_(communicator)
-  {
-    if (!owned.is_ascending_and_one_to_one(communicator))
-      throw SolverFailure("Krylov solver: each rank must own one range of unknowns, in the order of the ranks.");
-    for (const DoFIndex n : dealii::Utilities::MPI::all_gather(communicator, owned.n_elements()))
-      start_.push_back(start_.back() + n);
-  }
-
-  unsigned int Ownership::owner(const DoFIndex i) const
-  {
-    return std::upper_bound(start_.begin(), start_.end(), i) - start_.begin() - 1;
-  }
-
-  Ownership Ownership::times(const unsigned int factor) const
-  {
-    Ownership result(*this);
-    for (DoFIndex &i : result.start_)
-      i *= factor;
-    return result;
-  }
-
-  dealii::IndexSet Ownership::owned() const
-  {
-    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(communicator_);
-    dealii::IndexSet   result(start_.back());
-    result.add_range(start_[rank], start_[rank + 1]);
-    return result;
-  }
-
-  std::vector<MatrixEntry> Ownership::exchange(std::vector<MatrixEntry> entries) const
-  {
-    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(communicator_);
-    const auto         first =
-        std::partition(entries.begin(),
-                       entries.end(),
-                       [&](const MatrixEntry &e) { return e.row >= start_[rank] && e.row < start_[rank + 1]; });
-    std::map<unsigned int, std::vector<MatrixEntry>> outgoing;
-    for (auto e = first; e != entries.end(); ++e)
-      outgoing[owner(e->row)].push_back(*e);
-    entries.erase(first, entries.end());
-    wait_for_all(communicator_);
-    for (const auto &[source, received] : dealii::Utilities::MPI::some_to_some(communicator_, outgoing))
-      entries.insert(entries.end(), received.begin(), received.end());
-
-    const auto before = [](const MatrixEntry &a, const MatrixEntry &b)
-    { return a.row != b.row ? a.row < b.row : a.column < b.column; };
-    if (!std::is_sorted(entries.begin(), entries.end(), before))
-      std::sort(entries.begin(), entries.end(), before);
-    std::size_t n = 0;
-    for (const MatrixEntry &e : entries)
-      if (n > 0 && entries[n - 1].row == e.row && entries[n - 1].column == e.column)
-        entries[n - 1].value += e.value;
-      else
-        entries[n++] = e;
-    entries.resize(n);
-    return entries;
-  }
-
   SaddlePointOperator::SaddlePointOperator(const LinearSystem &system)
       : system_(system)
       , u_ownership_(system.layout->owned[0], system.layout->communicator)
@@ -96,18 +31,16 @@ namespace Nodus
         C.push_back({to_m(i), to_m(j), -v});
     }
 
-    const Epetra_Map &u_map = bulk().map().row_map();
-    const Epetra_Map  m_map = owned_m_.make_trilinos_map(layout.communicator, false);
-    uu_entries_             = u_ownership_.exchange(std::move(uu));
-    B_                      = make_matrix(m_ownership_.exchange(std::move(B)), m_map, u_map);
-    C_                      = make_matrix(m_ownership_.exchange(std::move(C)), m_map, m_map);
+    uu_entries_ = u_ownership_.exchange(std::move(uu));
+    B_          = std::make_unique<CouplingMatrix>(m_ownership_.exchange(std::move(B)), m_ownership_, u_ownership_);
+    C_          = std::make_unique<CouplingMatrix>(m_ownership_.exchange(std::move(C)), m_ownership_, m_ownership_);
     if (dealii::Utilities::MPI::max(uu_entries_.empty() ? 0 : 1, layout.communicator) != 0)
-      C_uu_ = std::make_unique<CouplingMatrix>(uu_entries_, u_map, u_map);
+      C_uu_ = std::make_unique<CouplingMatrix>(uu_entries_, u_ownership_, u_ownership_);
     equilibrate();
     if (!system.symmetric)
       make_variation();
-    const double norms = bulk().norm_squared() + B_->NormFrobenius() + C_->NormFrobenius() +
-                         (C_uu_ ? C_uu_->rows().NormFrobenius() : 0.);
+    const double norms =
+        bulk().norm_squared() + B_->norm_squared() + C_->norm_squared() + (C_uu_ ? C_uu_->norm_squared() : 0.);
     if (!std::isfinite(norms))
       throw SolverFailure("Krylov solver: the matrix holds a value that is not finite.",
                           SolverFailure::Kind::not_finite);
@@ -115,42 +48,37 @@ namespace Nodus
 
   void SaddlePointOperator::equilibrate()
   {
-    const Epetra_Map         &u_map = bulk().map().row_map();
-    Epetra_Vector             diagonal(u_map);
-    const std::vector<double> bulk_diagonal = bulk().diagonal();
-    std::copy(bulk_diagonal.begin(), bulk_diagonal.end(), diagonal.Values());
+    std::vector<double> diagonal = bulk().diagonal();
     for (const MatrixEntry &e : uu_entries_)
       if (e.row == e.column)
-        diagonal[u_map.LID(static_cast<int>(e.row))] += e.value;
-    double mean;
-    diagonal.Norm1(&mean);
-    mean /= u_map.NumGlobalElements();
+        diagonal[e.row - u_ownership_.begin()] += e.value;
+    double mean = 0.;
+    for (const double entry : diagonal)
+      mean += std::abs(entry);
+    mean = dealii::Utilities::MPI::sum(mean, communicator()) / system_.layout->n_u;
     // An indefinite tangent may hold diagonal entries that are negative or nearly vanish.
-    for (int i = 0; i < u_map.NumMyElements(); ++i)
-      diagonal[i] = std::max(std::abs(diagonal[i]), 1e-12 * mean);
+    for (double &entry : diagonal)
+      entry = std::max(std::abs(entry), 1e-12 * mean);
 
-    Epetra_Vector       column_diagonal(B_->ColMap());
-    const Epetra_Import import(B_->ColMap(), u_map);
-    column_diagonal.Import(diagonal, import, Insert);
-
-    const int     n = B_->NumMyRows();
-    Epetra_Vector scale(B_->RowMap()), C_diagonal(B_->RowMap());
-    C_->ExtractDiagonalCopy(C_diagonal);
+    const double *const column_diagonal = B_->at_columns(diagonal.data());
+    const unsigned int  n               = m_ownership_.end() - m_ownership_.begin();
     scale_.assign(n, 1.);
     stiffness_.assign(n, 0.);
-    for (int i = 0; i < n; ++i)
+    for (unsigned int i = 0; i < n; ++i)
     {
-      int     length;
-      double *values;
-      int    *columns;
-      B_->ExtractMyRowView(i, length, values, columns);
-      double square = 0., compliance = 0.;
-      for (int k = 0; k < length; ++k)
-      {
-        square += values[k] * values[k];
-        compliance += values[k] * values[k] / column_diagonal[columns[k]];
-      }
-      const double c = std::abs(C_diagonal[i]);
+      double square = 0., compliance = 0., c = 0.;
+      B_->for_row(i,
+                  [&](const unsigned int column, const double value)
+                  {
+                    square += value * value;
+                    compliance += value * value / column_diagonal[column];
+                  });
+      C_->for_row(i,
+                  [&](const unsigned int column, const double value)
+                  {
+                    if (C_->columns()[column] == m_ownership_.begin() + i)
+                      c = std::abs(value);
+                  });
       if (square > 0.)
       {
         stiffness_[i] = square / compliance;
@@ -160,11 +88,10 @@ namespace Nodus
       }
       else if (c > 0.)
         scale_[i] = std::sqrt(mean / c);
-      scale[i] = scale_[i];
     }
-    B_->LeftScale(scale);
-    C_->LeftScale(scale);
-    C_->RightScale(scale);
+    B_->scale_rows(scale_);
+    C_->scale_rows(scale_);
+    C_->scale_columns(scale_);
   }
 
   DoFIndex SaddlePointOperator::to_m(const DoFIndex flat) const
@@ -184,26 +111,25 @@ namespace Nodus
       (u_row ? (u_column ? uu : um) : (u_column ? mu : mm))
           .push_back({u_row ? v.row[k] : to_m(v.row[k]), u_column ? v.column[k] : to_m(v.column[k]), v.value[k]});
     }
-    const Epetra_Map   &u_map = bulk().map().row_map();
-    const Epetra_Map    m_map = owned_m_.make_trilinos_map(system_.layout->communicator, false);
-    const Epetra_Vector scale(View, m_map, scale_.data());
-    variation_.uu = std::make_unique<CouplingMatrix>(u_ownership_.exchange(std::move(uu)), u_map, u_map);
-    variation_.um = std::make_unique<CouplingMatrix>(u_ownership_.exchange(std::move(um)), u_map, m_map);
-    variation_.mu = make_matrix(m_ownership_.exchange(std::move(mu)), m_map, u_map);
-    variation_.mm = make_matrix(m_ownership_.exchange(std::move(mm)), m_map, m_map);
-    variation_.um->rows().RightScale(scale);
-    variation_.mu->LeftScale(scale);
-    variation_.mm->LeftScale(scale);
-    variation_.mm->RightScale(scale);
+    const auto make = [](std::vector<MatrixEntry> &entries, const Ownership &range, const Ownership &domain)
+    { return std::make_unique<CouplingMatrix>(range.exchange(std::move(entries)), range, domain); };
+    variation_.uu = make(uu, u_ownership_, u_ownership_);
+    variation_.um = make(um, u_ownership_, m_ownership_);
+    variation_.mu = make(mu, m_ownership_, u_ownership_);
+    variation_.mm = make(mm, m_ownership_, m_ownership_);
+    variation_.um->scale_columns(scale_);
+    variation_.mu->scale_rows(scale_);
+    variation_.mm->scale_rows(scale_);
+    variation_.mm->scale_columns(scale_);
   }
 
-  void SaddlePointOperator::apply_stiffness(const Epetra_MultiVector &u, Epetra_MultiVector &f) const
+  void SaddlePointOperator::apply_stiffness(const double *const u, double *const f) const
   {
-    bulk().vmult(f[0], u[0]);
+    bulk().vmult(f, u);
     add_coupling(u, f);
   }
 
-  void SaddlePointOperator::add_coupling(const Epetra_MultiVector &u, Epetra_MultiVector &f) const
+  void SaddlePointOperator::add_coupling(const double *const u, double *const f) const
   {
     if (C_uu_)
       C_uu_->add_product(u, f);
@@ -224,24 +150,20 @@ namespace Nodus
 
   void SaddlePointOperator::vmult(BlockVector &dst, const BlockVector &src) const
   {
-    const Epetra_MultiVector &u = src.block(0).trilinos_vector(), &m = src.block(1).trilinos_vector();
-    Epetra_MultiVector       &f = dst.block(0).trilinos_vector(), &g = dst.block(1).trilinos_vector();
+    const double *const u = src.block(0).trilinos_vector()[0], *const m = src.block(1).trilinos_vector()[0];
+    double *const f = dst.block(0).trilinos_vector()[0], *const g = dst.block(1).trilinos_vector()[0];
 
     apply_stiffness(u, f);
-    add_transposed_product(*B_, 1., m, f);
-
-    Epetra_MultiVector m_part(g.Map(), 1, false);
-    B_->Multiply(false, u, g);
-    C_->Multiply(false, m, m_part);
-    g.Update(-1., m_part, 1.);
+    B_->add_transposed_product(m, f);
+    std::fill_n(g, m_ownership_.end() - m_ownership_.begin(), 0.);
+    B_->add_product(u, g);
+    C_->add_product(m, g, -1.);
     if (!variation_.uu)
       return;
     variation_.uu->add_product(u, f);
     variation_.um->add_product(m, f);
-    variation_.mu->Multiply(false, u, m_part);
-    g.Update(1., m_part, 1.);
-    variation_.mm->Multiply(false, m, m_part);
-    g.Update(1., m_part, 1.);
+    variation_.mu->add_product(u, g);
+    variation_.mm->add_product(m, g);
   }
 
   BlockVector SaddlePointOperator::scaled(const BlockVector &rhs) const

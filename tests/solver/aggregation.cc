@@ -63,7 +63,7 @@ namespace
       constexpr double   omega = 0.6;
       Aggregation        coarse(K, A, modes, D_inverse, omega);
       const auto         matrix   = coarse.make_coarse_matrix(K);
-      const Epetra_Map  &map      = matrix->map().row_map();
+      const Epetra_Map   map      = matrix->map().dof_map();
       const unsigned int n_coarse = map.NumMyElements();
 
       double worst = 0.;
@@ -132,7 +132,7 @@ namespace
     /// A x in double precision, block by block.
     std::vector<double> apply(const std::vector<double> &x) const
     {
-      const double       *all = A.map().with_ghosts(x.data());
+      const NodeValues    all = A.map().with_ghosts(x.data());
       std::vector<double> y(n, 0.);
       for (unsigned int i = 0; i < K.map().n_owned(); ++i)
         A.for_row(K,
@@ -141,7 +141,7 @@ namespace
                   {
                     for (unsigned int c = 0; c < dim; ++c)
                       for (unsigned int d = 0; d < dim; ++d)
-                        y[dim * i + c] += block[transposed ? dim * d + c : dim * c + d] * all[dim * j + d];
+                        y[dim * i + c] += block[transposed ? dim * d + c : dim * c + d] * all[j][d];
                   });
       return y;
     }

@@ -2,9 +2,9 @@
 #define nodus_contact_surface_h
 
 #include <nodus/contact/face_directory.h>
-#include <nodus/contact/ghost_exchange.h>
 #include <nodus/contact/rigid_surface.h>
 #include <nodus/contact/surface_face.h>
+#include <nodus/ghost_exchange.h>
 #include <nodus/mesh/bodies.h>
 #include <nodus/parameters.h>
 #include <nodus/solve/linear_system.h>

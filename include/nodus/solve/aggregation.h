@@ -4,8 +4,6 @@
 #include <nodus/solve/corrected_matrix.h>
 
 #include <Eigen/Core>
-#include <Epetra_Import.h>
-#include <Epetra_MultiVector.h>
 
 #include <array>
 #include <memory>
@@ -53,7 +51,6 @@ namespace Nodus
     void aggregate(const NodeMatrix &K, const std::vector<double> &modes);
     void make_tentative(std::vector<double> modes);
     void smooth(const NodeMatrix &K, const std::vector<std::array<double, 9>> &D_inverse, double omega);
-    void make_maps();
 
     std::vector<Row> ghost_rows() const;
     DoFIndex         global_aggregate(const unsigned int a) const
@@ -63,19 +60,19 @@ namespace Nodus
 
     const CorrectedMatrix    &A_;
     const NodeMap            &nodes_;
-    unsigned int              n_aggregates_ = 0;      ///< owned
-    DoFIndex                  first_ = 0, total_ = 0; ///< global number of the first one, number of all
-    std::vector<DoFIndex>     ghosts_;                ///< aggregates of other ranks, ascending
-    std::vector<unsigned int> aggregate_;             ///< of the local nodes, or invalid
-    std::vector<double>       tentative_;             ///< like modes; while P is made
+    unsigned int              n_aggregates_ = 0; ///< owned
+    std::vector<DoFIndex>     starts_;           ///< of the aggregates of each rank, and the number of all
+    DoFIndex                  first_ = 0;
+    std::vector<DoFIndex>     ghosts_;    ///< aggregates of other ranks, ascending
+    std::vector<unsigned int> aggregate_; ///< of the local nodes, or invalid
+    std::vector<double>       tentative_; ///< like modes; while P is made
     std::vector<double>       coarse_modes_;
     // P: per entry a local aggregate and three displacements by six modes, row by row. Single precision halves what a
     // cycle reads; P^T A P belongs to the rounded P.
-    std::vector<std::uint32_t>                  start_, column_;
-    std::vector<float>                          blocks_;
-    std::unique_ptr<Epetra_Map>                 row_map_, column_map_;
-    std::unique_ptr<Epetra_Import>              import_; ///< null when no rank has ghosts
-    mutable std::unique_ptr<Epetra_MultiVector> values_;
+    std::vector<std::uint32_t>  start_, column_;
+    std::vector<float>          blocks_;
+    GhostExchange               exchange_;
+    mutable std::vector<double> ghost_values_; ///< six per ghost
   };
 } // namespace Nodus
 

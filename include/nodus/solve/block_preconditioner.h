@@ -36,14 +36,14 @@ namespace Nodus
     void make_augmented_matrix();
 
     /// D^-1 times @p m, in place.
-    void apply_multiplier_blocks(Epetra_MultiVector &m) const;
+    void apply_multiplier_blocks(double *m) const;
 
-    const SaddlePointOperator                  &system_;
-    std::vector<std::array<double, 9>>          D_inverse_; ///< per owned slave node, row by row
-    std::unique_ptr<CorrectedMatrix>            augmented_;
-    std::unique_ptr<Multigrid>                  multigrid_;
-    mutable Vector                              augmented_rhs_;
-    mutable std::unique_ptr<Epetra_MultiVector> multiplier_part_;
+    const SaddlePointOperator         &system_;
+    std::vector<std::array<double, 9>> D_inverse_; ///< per owned slave node, row by row
+    std::unique_ptr<CorrectedMatrix>   augmented_;
+    std::unique_ptr<Multigrid>         multigrid_;
+    mutable Vector                     augmented_rhs_;
+    mutable std::vector<double>        multiplier_part_;
   };
 } // namespace Nodus
 

@@ -100,11 +100,11 @@ namespace Nodus
     /// Solves for the constraint displacements (transposed: forces) of the cluster, in place per site and direction.
     void solve_cluster(std::vector<Eigen::Vector3d> &values, bool transposed) const;
 
-    void apply_stiffness(Epetra_MultiVector &m) const;                          ///< m = D m
-    void add_springs(const Epetra_MultiVector &u, Epetra_MultiVector &f) const; ///< f += B^T D B u
-    void take_out(Epetra_MultiVector &v) const; ///< zeros at the nodes that are taken out
-    void apply_transformation(const Epetra_MultiVector &y, Epetra_MultiVector &u) const;
-    void apply_transposed(const Epetra_MultiVector &f, Epetra_MultiVector &y) const;
+    void apply_stiffness(double *m) const;              ///< m = D m
+    void add_springs(const double *u, double *f) const; ///< f += B^T D B u
+    void take_out(double *v) const;                     ///< zeros at the nodes that are taken out
+    void apply_transformation(const double *y, double *u) const;
+    void apply_transposed(const double *f, double *y) const;
 
     const SaddlePointOperator                   &system_;
     const NodeMap                               &nodes_;
@@ -115,8 +115,8 @@ namespace Nodus
     std::vector<unsigned int>                    replaced_;   ///< local nodes that are taken out
     std::vector<std::pair<unsigned int, double>> eliminated_; ///< owned unknowns without meaning, and a diagonal
     std::unique_ptr<CouplingMatrix>              T_;          ///< rows that are not those of the identity
-    Vector                                       particular_; ///< u_g
-    mutable Epetra_MultiVector                   u_, f_, multiplier_;
+    std::vector<double>                          particular_; ///< u_g
+    mutable std::vector<double>                  u_, f_, multiplier_;
   };
 } // namespace Nodus
 

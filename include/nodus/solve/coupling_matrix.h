@@ -1,61 +1,66 @@
 #ifndef nodus_solve_coupling_matrix_h
 #define nodus_solve_coupling_matrix_h
 
-#include <nodus/types.h>
+#include <nodus/ghost_exchange.h>
+#include <nodus/solve/ownership.h>
 
-#include <Epetra_CrsMatrix.h>
-#include <Epetra_MultiVector.h>
-
-#include <memory>
+#include <algorithm>
+#include <cstdint>
 #include <vector>
 
 namespace Nodus
 {
-  /// An entry of a distributed matrix, on its way to the rank that owns the row.
-  struct MatrixEntry
-  {
-    DoFIndex row, column;
-    double   value;
-
-    template <typename Archive>
-    void serialize(Archive &archive, const unsigned int)
-    {
-      archive &row &column &value;
-    }
-  };
-
-  /// Matrix of the sorted @p entries of owned rows, with the given row and column maps. Collective.
-  std::unique_ptr<Epetra_CrsMatrix>
-  make_matrix(const std::vector<MatrixEntry> &entries, const Epetra_Map &range, const Epetra_Map &domain);
-
-  /// y += factor A^T x. Touches only the columns that A has entries in. Collective.
-  void
-  add_transposed_product(const Epetra_CrsMatrix &A, double factor, const Epetra_MultiVector &x, Epetra_MultiVector &y);
-
-  /// Matrix with entries in few rows, as contact couples the displacements of few nodes: products pass over those rows
-  /// alone, and the others take no memory.
+  /// Distributed matrix with entries in few rows and columns, as contact couples the displacements of few nodes:
+  /// products pass over those alone, and the others take no memory. Vectors hold the owned values of the range or the
+  /// domain.
   class CouplingMatrix
   {
   public:
-    /// As make_matrix().
-    CouplingMatrix(const std::vector<MatrixEntry> &entries, const Epetra_Map &range, const Epetra_Map &domain);
+    /// @param entries of owned rows, sorted by row and column, each place once. Collective.
+    CouplingMatrix(const std::vector<MatrixEntry> &entries, const Ownership &range, const Ownership &domain);
 
-    /// y += A x, over the whole range. Collective.
-    void add_product(const Epetra_MultiVector &x, Epetra_MultiVector &y) const;
-    /// y += A^T x, @p x over the whole range. Collective.
-    void add_transposed_product(const Epetra_MultiVector &x, Epetra_MultiVector &y) const;
+    /// y += factor A x. Collective.
+    void add_product(const double *x, double *y, double factor = 1.) const;
+    /// y += factor A^T x. Collective.
+    void add_transposed_product(const double *x, double *y, double factor = 1.) const;
 
-    /// The rows with entries.
-    Epetra_CrsMatrix &rows()
+    void scale_rows(const std::vector<double> &factor);
+    /// Collective.
+    void scale_columns(const std::vector<double> &factor);
+    /// Sum of the squares of all entries, over all ranks. Collective.
+    double norm_squared() const;
+
+    /// Columns with entries have local numbers, which this turns into global ones.
+    const std::vector<DoFIndex> &columns() const
     {
-      return *rows_;
+      return columns_;
     }
+    /// Values of @p x at those columns; valid until the next product. Collective.
+    const double *at_columns(const double *x) const;
+    /// Calls f(local column, value) for the entries of a row, an index into vectors over the range.
+    template <typename Function>
+    void for_row(unsigned int row, const Function &f) const;
 
   private:
-    std::vector<int>                  position_; ///< of the rows, in vectors over the range
-    std::unique_ptr<Epetra_CrsMatrix> rows_;
-    mutable Epetra_MultiVector        values_; ///< of the rows
+    const MPI_Comm              communicator_;
+    std::vector<std::uint32_t>  rows_, start_, column_; ///< rows with entries, where those start, local columns
+    std::vector<double>         value_;
+    std::vector<DoFIndex>       columns_;  ///< owned, then others, ascending in each part
+    std::vector<std::uint32_t>  position_; ///< of the owned columns, in vectors over the domain
+    GhostExchange               exchange_;
+    mutable std::vector<double> at_columns_;
   };
+
+  template <typename Function>
+  void CouplingMatrix::for_row(const unsigned int row, const Function &f) const
+  {
+    const auto found = std::lower_bound(rows_.begin(), rows_.end(), row);
+    if (found == rows_.end() || *found != row)
+      return;
+    const std::size_t i = found - rows_.begin();
+    for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+      f(column_[k], value_[k]);
+  }
 } // namespace Nodus
 
 #endif

@@ -1,13 +1,11 @@
 #ifndef nodus_solve_node_matrix_h
 #define nodus_solve_node_matrix_h
 
-#include <nodus/types.h>
+#include <nodus/ghost_exchange.h>
 
 #include <deal.II/base/index_set.h>
 
-#include <Epetra_Import.h>
 #include <Epetra_Map.h>
-#include <Epetra_MultiVector.h>
 
 #include <cstdint>
 #include <functional>
@@ -17,6 +15,18 @@
 
 namespace Nodus
 {
+  /// Values at the nodes of a NodeMap, three each, the owned ones and the ghosts in arrays of their own.
+  struct NodeValues
+  {
+    const double *owned, *ghosts;
+    unsigned int  n_owned;
+
+    const double *operator[](const unsigned int node) const
+    {
+      return node < n_owned ? owned + dim * node : ghosts + dim * (node - n_owned);
+    }
+  };
+
   /// Local numbers of the displacement nodes that a rank works with: the owned ones in the order of their degrees of
   /// freedom, then ghosts in ascending order. Degrees of freedom 3i, 3i+1, 3i+2 are the components of node i.
   class NodeMap
@@ -41,17 +51,14 @@ namespace Nodus
     {
       return i < n_owned_ ? first_ + i : ghosts_[i - n_owned_];
     }
-    /// Maps of degrees of freedom: owned, and owned with ghosts.
-    const Epetra_Map &row_map() const
+    /// The owned degrees of freedom. Collective.
+    Epetra_Map dof_map() const;
+    DoFIndex   n_global() const
     {
-      return *row_map_;
+      return start_.back();
     }
-    const Epetra_Map &column_map() const
-    {
-      return *column_map_;
-    }
-    /// Values at owned nodes and ghosts of a vector over row_map(), three each; valid until the next call. Collective.
-    const double *with_ghosts(const double *owned) const;
+    /// Fetches the values at ghosts, to stay until the next call. Collective.
+    NodeValues with_ghosts(const double *owned) const;
     /// Asks the owners of @p nodes (global) for numbers about them; @p answer gets a local number. Collective.
     std::map<DoFIndex, std::vector<double>> ask(const std::vector<DoFIndex>                            &nodes,
                                                 const std::function<std::vector<double>(unsigned int)> &answer) const;
@@ -62,17 +69,16 @@ namespace Nodus
     }
 
   private:
-    void make_maps();
+    void make_exchange();
 
-    MPI_Comm                                    communicator_;
-    std::vector<DoFIndex>                       start_; ///< of each rank's nodes, and the number of all
-    DoFIndex                                    first_;
-    unsigned int                                n_owned_;
-    std::vector<DoFIndex>                       ghosts_; ///< of the base, then the others, ascending in each part
-    std::vector<unsigned int>                   end_of_part_;
-    std::unique_ptr<Epetra_Map>                 row_map_, column_map_;
-    std::unique_ptr<Epetra_Import>              import_; ///< null when no rank has ghosts
-    mutable std::unique_ptr<Epetra_MultiVector> values_;
+    MPI_Comm                    communicator_;
+    std::vector<DoFIndex>       start_; ///< of each rank's nodes, and the number of all
+    DoFIndex                    first_;
+    unsigned int                n_owned_;
+    std::vector<DoFIndex>       ghosts_; ///< of the base, then the others, ascending in each part
+    std::vector<unsigned int>   end_of_part_;
+    GhostExchange               exchange_;
+    mutable std::vector<double> ghost_values_;
   };
 
   /// Where the blocks of a NodeMatrix are.
@@ -88,9 +94,9 @@ namespace Nodus
     std::vector<std::uint32_t> lower_start; ///< of the columns, those of ghosts included
     std::vector<Lower>         lower;       ///< blocks of a column in lower rows
 
-    /// y = A x for @p values of 9 per block, row by row, and 3 more; @p x at all local nodes.
+    /// y = A x for @p values of 9 per block, row by row, and 3 more.
     template <typename Number>
-    void vmult(const Number *values, double *y, const double *x) const;
+    void vmult(const Number *values, double *y, const NodeValues &x) const;
   };
 
   /// Symmetric matrix of 3x3 blocks between displacement nodes.

@@ -6,7 +6,6 @@
 #include <nodus/solve/linear_system.h>
 
 #include <Eigen/Core>
-#include <Epetra_CrsMatrix.h>
 
 #include <functional>
 #include <memory>
@@ -15,27 +14,6 @@
 
 namespace Nodus
 {
-  /// Contiguous index ranges of the ranks, known to every rank.
-  class Ownership
-  {
-  public:
-    Ownership(const dealii::IndexSet &owned, MPI_Comm communicator);
-
-    unsigned int owner(DoFIndex i) const;
-
-    /// The owned indices number @p factor times as many when each one is replaced by that many consecutive ones.
-    Ownership times(unsigned int factor) const;
-
-    dealii::IndexSet owned() const;
-
-    /// Adds up the entries of all ranks and keeps the rows owned here, sorted by row and column. Collective.
-    std::vector<MatrixEntry> exchange(std::vector<MatrixEntry> entries) const;
-
-  private:
-    std::vector<DoFIndex> start_; ///< of each rank, and the size
-    MPI_Comm              communicator_;
-  };
-
   /// A LinearSystem as an operator on vectors (u, m) with two blocks: the three multipliers of a slave node follow each
   /// other in m, and they are scaled so that a unit of every multiplier acts on u like a unit of displacement does
   /// through the diagonal of the stiffness. All rows are then forces, and a residual norm hides none of them.
@@ -82,11 +60,11 @@ namespace Nodus
     {
       return system_.bulk;
     }
-    const Epetra_CrsMatrix &B() const
+    const CouplingMatrix &B() const
     {
       return *B_;
     }
-    const Epetra_CrsMatrix &C() const
+    const CouplingMatrix &C() const
     {
       return *C_;
     }
@@ -99,15 +77,19 @@ namespace Nodus
     {
       return u_ownership_;
     }
+    const Ownership &multiplier_ownership() const
+    {
+      return m_ownership_;
+    }
     /// Global displacement node of each owned slave node.
     const std::vector<DoFIndex> &slave_nodes() const
     {
       return system_.layout->slave_nodes;
     }
     /// f = (bulk + C_uu) u, over the owned displacements.
-    void apply_stiffness(const Epetra_MultiVector &u, Epetra_MultiVector &f) const;
+    void apply_stiffness(const double *u, double *f) const;
     /// f += C_uu u
-    void add_coupling(const Epetra_MultiVector &u, Epetra_MultiVector &f) const;
+    void add_coupling(const double *u, double *f) const;
     /// C_uu between the components of an owned node.
     Eigen::Matrix3d own_coupling(DoFIndex node) const;
     /// Stiffness that each owned multiplier sees, |B_i|^2 / (B diag(K)^-1 B^T)_ii; 0 for multipliers without coupling.
@@ -121,18 +103,16 @@ namespace Nodus
     void     equilibrate();
     void     make_variation();
 
-    const LinearSystem               &system_;
-    const Ownership                   u_ownership_, m_ownership_;
-    const dealii::IndexSet            owned_m_;
-    std::vector<MatrixEntry>          uu_entries_;
-    std::unique_ptr<Epetra_CrsMatrix> B_, C_;
-    std::unique_ptr<CouplingMatrix>   C_uu_;  ///< null when it has no entries
-    std::vector<double>               scale_; ///< of owned multipliers: multiplier = scale x unknown
-    std::vector<double>               stiffness_;
+    const LinearSystem             &system_;
+    const Ownership                 u_ownership_, m_ownership_;
+    const dealii::IndexSet          owned_m_;
+    std::vector<MatrixEntry>        uu_entries_;
+    std::unique_ptr<CouplingMatrix> B_, C_, C_uu_; ///< the last null when it has no entries
+    std::vector<double>             scale_;        ///< of owned multipliers: multiplier = scale x unknown
+    std::vector<double>             stiffness_;
     struct
     {
-      std::unique_ptr<CouplingMatrix>   uu, um;
-      std::unique_ptr<Epetra_CrsMatrix> mu, mm;
+      std::unique_ptr<CouplingMatrix> uu, um, mu, mm;
     } variation_; ///< null in a symmetric system
   };
 } // namespace Nodus
