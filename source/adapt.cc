@@ -46,7 +46,7 @@ namespace Nodus
   /// if asked for.
   bool ContactProblem::Implementation::refine(const RefinementIndicator &indicator, const bool keep_state)
   {
-    auto &triangulation = bodies.triangulation();
+    auto &triangulation = *bodies.refinable();
     if (!mark_cells(parameters.adaptivity, parameters.bodies, indicator, dof_handler.n_dofs(), triangulation))
       return false;
     if (!keep_state)

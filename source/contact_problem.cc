@@ -33,13 +33,25 @@ namespace Nodus
       return materials;
     }
 
+    bool refines(const AdaptivityParameters &adaptivity)
+    {
+      return adaptivity.interval > 0 || adaptivity.initial_cycles > 0 || adaptivity.repetitions > 0;
+    }
+
+    std::vector<RegionParameters> slaves(const std::vector<ContactPairParameters> &pairs)
+    {
+      std::vector<RegionParameters> result;
+      for (const auto &pair : pairs)
+        result.push_back(pair.slave);
+      return result;
+    }
   } // namespace
 
   ContactProblem::Implementation::Implementation(const Parameters &p, MPI_Comm comm, std::ostream &log)
       : parameters(p)
       , communicator(comm)
       , console(log, dealii::Utilities::MPI::this_mpi_process(comm) == 0)
-      , bodies(parameters.bodies, comm)
+      , bodies(parameters.bodies, comm, refines(parameters.adaptivity), slaves(parameters.contact_pairs))
       , mapping(bodies.make_mapping(parameters.degree))
       , fe(dealii::FE_Q<dim>(parameters.degree), dim)
       , dof_handler(bodies.triangulation())

@@ -86,6 +86,14 @@ namespace Nodus
     constexpr unsigned int largest_level_change = 30;
     using Cell                                  = dealii::DoFHandler<dim>::active_cell_iterator;
 
+    /// The same whatever kind of triangulation holds the cell.
+    Checkpoints::Piece::CellKey key_of(const Bodies &bodies, const Bodies::Triangulation::cell_iterator &cell)
+    {
+      Checkpoints::Piece::CellKey key = cell->id().to_binary<dim>();
+      key[0]                          = bodies.coarse_cell(cell);
+      return key;
+    }
+
     /// Whether two integration points lie on the same face.
     bool same_face(const ContactSurfaces &surfaces, const unsigned int a, const unsigned int b)
     {
@@ -93,8 +101,8 @@ namespace Nodus
     }
 
     /// Names of this rank's slave faces with integration points, and of each the first of these among the sites.
-    std::map<Checkpoints::Piece::FaceKey, unsigned int> faces_with_points(const ContactSurfaces         &surfaces,
-                                                                          const dealii::DoFHandler<dim> &dof_handler)
+    std::map<Checkpoints::Piece::FaceKey, unsigned int>
+    faces_with_points(const Bodies &bodies, const ContactSurfaces &surfaces, const dealii::DoFHandler<dim> &dof_handler)
     {
       std::map<unsigned int, std::vector<std::pair<std::set<DoFIndex>, unsigned int>>> first_point; // nodes; by cell
       for (unsigned int s = surfaces.n_sites(); s-- > surfaces.slave_nodes().size();)
@@ -124,7 +132,7 @@ namespace Nodus
                 shared += fe.system_to_component_index(i).first == 0 && fe.has_support_on_face(i, face) &&
                           nodes.count(dofs[i]) == 1;
               if (2 * shared > nodes.size())
-                faces[{cell->id().to_binary<dim>(), face}] = first;
+                faces[{key_of(bodies, cell), face}] = first;
             }
         }
       return faces;
@@ -172,12 +180,12 @@ namespace Nodus
         const std::size_t n_always = n_displacement_vectors * dofs.size();
         if (std::all_of(values.begin() + n_always, values.end(), [](const double v) { return v == 0.; }))
           values.resize(n_always);
-        piece.cells.emplace_back(cell->id().to_binary<dim>(), std::move(values));
+        piece.cells.emplace_back(key_of(bodies, cell), std::move(values));
         if (!histories[n_cells].empty())
-          piece.histories.emplace_back(cell->id().to_binary<dim>(), std::move(histories[n_cells]));
+          piece.histories.emplace_back(key_of(bodies, cell), std::move(histories[n_cells]));
         ++n_cells;
       }
-    for (const auto &[face, first] : faces_with_points(*surfaces, dof_handler))
+    for (const auto &[face, first] : faces_with_points(bodies, *surfaces, dof_handler))
     {
       std::vector<double> values;
       for (unsigned int s = first; s < first + n_points(*surfaces, first); ++s)
@@ -228,19 +236,18 @@ namespace Nodus
     for (const auto &file : pieces)
       for (const auto &cell : Checkpoints::read(file).cells)
         wanted.insert(cell.first);
-    auto &triangulation = bodies.triangulation();
-    bool  changed       = false;
+    bool changed = false;
     for (unsigned int round = 0; round < largest_level_change; ++round)
     {
       unsigned int changes = 0;
-      for (const auto &cell : triangulation.active_cell_iterators())
-        if (cell->is_locally_owned() && wanted.count(cell->id().to_binary<dim>()) == 0)
+      for (const auto &cell : bodies.triangulation().active_cell_iterators())
+        if (cell->is_locally_owned() && wanted.count(key_of(bodies, cell)) == 0)
         {
           bool finer = false;
           for (auto coarser = Bodies::Triangulation::cell_iterator(cell); coarser->level() > 0 && !finer;)
           {
             coarser = coarser->parent();
-            finer   = wanted.count(coarser->id().to_binary<dim>()) == 1;
+            finer   = wanted.count(key_of(bodies, coarser)) == 1;
           }
           if (finer)
             cell->set_coarsen_flag();
@@ -250,7 +257,11 @@ namespace Nodus
         }
       if (dealii::Utilities::MPI::max(changes, communicator) == 0)
         break;
-      triangulation.execute_coarsening_and_refinement();
+      if (!bodies.refinable())
+        throw InputError("the checkpoint in " + parameters.output.results_folder +
+                         " is of a refined mesh, but this run is to refine none: keep 'Adaptivity/Interval' (more than "
+                         "there are increments, and the mesh stays as it is)");
+      bodies.refinable()->execute_coarsening_and_refinement();
       changed = true;
     }
     if (!changed)
@@ -266,11 +277,11 @@ namespace Nodus
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
       {
-        const std::size_t n                = cells.size();
-        cells[cell->id().to_binary<dim>()] = {cell, n};
+        const std::size_t n         = cells.size();
+        cells[key_of(bodies, cell)] = {cell, n};
       }
     std::vector<std::vector<double>> histories(cells.size());
-    const auto                       faces = faces_with_points(*surfaces, dof_handler);
+    const auto                       faces = faces_with_points(bodies, *surfaces, dof_handler);
 
     std::vector<Vector> vectors(n_displacement_vectors + n_node_vectors,
                                 Vector(surfaces->layout().owned[0], communicator));

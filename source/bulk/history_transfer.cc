@@ -17,7 +17,7 @@ namespace Nodus
   {
     Implementation(const std::vector<std::unique_ptr<Material>> &materials,
                    const unsigned int                            degree,
-                   Bodies::Triangulation                        &triangulation)
+                   Bodies::RefinableTriangulation               &triangulation)
         : materials(materials)
         , triangulation(triangulation)
         , transfer(
@@ -90,7 +90,7 @@ namespace Nodus
     }
 
     const std::vector<std::unique_ptr<Material>>                                  &materials;
-    Bodies::Triangulation                                                         &triangulation;
+    Bodies::RefinableTriangulation                                                &triangulation;
     std::vector<dealii::FullMatrix<double>>                                        at_child; ///< [child](q, j)
     std::vector<unsigned int>                                                      child_of; ///< of parents' points
     std::vector<std::vector<double>>                                               at_parent;
@@ -101,7 +101,7 @@ namespace Nodus
   HistoryTransfer::HistoryTransfer(const SolidAssembler                         &solid,
                                    const std::vector<std::unique_ptr<Material>> &materials,
                                    const unsigned int                            degree,
-                                   Bodies::Triangulation                        &triangulation)
+                                   Bodies::RefinableTriangulation               &triangulation)
   {
     if (!solid.has_history())
       return;

@@ -5,13 +5,6 @@
 
 namespace Nodus
 {
-  namespace
-  {
-    /// Work of a cell (assembly, solution with multigrid) and, on top, of a slave face (search, jumps, couplings): 0.24
-    /// against 1.06 ms of a Hertz case with 40824 cells and 576 slave faces.
-    constexpr unsigned int cell_weight = 1000, slave_face_weight = 4000;
-  } // namespace
-
   std::string pair_label(const std::vector<ContactPairParameters> &pairs, const unsigned int pair)
   {
     return "Contact pair " + std::to_string(pair + 1) +
@@ -27,10 +20,11 @@ namespace Nodus
     bodies.balance(
         [slaves, &mapping](const Bodies::Triangulation::cell_iterator &cell)
         {
-          unsigned int weight = cell_weight;
+          unsigned int weight = Bodies::cell_weight;
           for (const unsigned int f : cell->face_indices())
             for (const Region &region : *slaves)
-              weight += cell->face(f)->at_boundary() && region.selects_face(mapping, cell, f) ? slave_face_weight : 0;
+              weight +=
+                  cell->face(f)->at_boundary() && region.selects_face(mapping, cell, f) ? Bodies::slave_face_weight : 0;
           return weight;
         });
   }

@@ -1,9 +1,12 @@
 #include <nodus/mesh/bodies.h>
 #include <nodus/mesh/expression.h>
 #include <nodus/mesh/gmsh_reader.h>
+#include <nodus/mesh/mesh_share.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/mpi.templates.h>
 #include <deal.II/base/numbers.h>
+#include <deal.II/distributed/fully_distributed_tria.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
@@ -107,8 +110,6 @@ namespace Nodus
       Placement                              placement_;
     };
 
-    using ManifoldMap = std::map<dealii::types::manifold_id, std::unique_ptr<dealii::Manifold<dim>>>;
-
     std::unique_ptr<dealii::Triangulation<dim>> generate(const BodyParameters &parameters)
     {
       auto              mesh = std::make_unique<dealii::Triangulation<dim>>();
@@ -206,10 +207,10 @@ namespace Nodus
     }
 
     /// Gives the manifolds of a generated body ids that no other body uses, in @p mesh and in @p manifolds.
-    void place_manifolds(const dealii::Triangulation<dim> &generated,
-                         const Placement                  &placement,
-                         CoarseMesh                       &mesh,
-                         ManifoldMap                      &manifolds)
+    void place_manifolds(const dealii::Triangulation<dim>                                             &generated,
+                         const Placement                                                              &placement,
+                         CoarseMesh                                                                   &mesh,
+                         std::map<dealii::types::manifold_id, std::unique_ptr<dealii::Manifold<dim>>> &manifolds)
     {
       std::map<dealii::types::manifold_id, dealii::types::manifold_id> renumbered;
       for (const auto id : generated.get_manifold_ids())
@@ -251,22 +252,55 @@ namespace Nodus
       return mesh;
     }
 
+    /// The cell of each boundary face.
+    std::vector<unsigned int> cells_at_boundary(const CoarseMesh &mesh)
+    {
+      // a cell has all vertices of its face: look among those of one vertex
+      std::vector<std::vector<unsigned int>> cells(mesh.vertices.size());
+      const auto                            &quads = mesh.boundary.boundary_quads;
+      std::vector<char>                      is_first(mesh.vertices.size(), 0);
+      for (const auto &quad : quads)
+        is_first[quad.vertices[0]] = 1;
+      for (unsigned int c = 0; c < mesh.cells.size(); ++c)
+        for (const unsigned int v : mesh.cells[c].vertices)
+          if (is_first[v])
+            cells[v].push_back(c);
+      std::vector<unsigned int> result;
+      for (const auto &quad : quads)
+        for (const unsigned int c : cells[quad.vertices[0]])
+        {
+          const auto &all = mesh.cells[c].vertices;
+          if (std::all_of(quad.vertices.begin(),
+                          quad.vertices.end(),
+                          [&](const unsigned int v) { return std::find(all.begin(), all.end(), v) != all.end(); }))
+          {
+            result.push_back(c);
+            break;
+          }
+        }
+      return result;
+    }
+
     std::string display_name(const BodyParameters &parameters, const unsigned int index)
     {
       return parameters.name.empty() ? "body " + std::to_string(index + 1) : parameters.name;
     }
   } // namespace
 
-  Bodies::Bodies(const std::vector<BodyParameters> &parameters, MPI_Comm communicator)
-      : triangulation_(communicator)
-      , curved_(std::make_shared<CurvedGeometry>())
+  Bodies::Bodies(const std::vector<BodyParameters>   &parameters,
+                 const MPI_Comm                       communicator,
+                 const bool                           may_be_refined,
+                 const std::vector<RegionParameters> &slaves)
+      : curved_(std::make_shared<CurvedGeometry>())
   {
     // Each rank reads the files itself. Should only some fail (a folder that one machine does not see), the others
     // must not wait for them for ever.
+    CoarseMesh  mesh;
+    Manifolds   manifolds;
     std::string failure;
     try
     {
-      create(parameters);
+      mesh = read(parameters, manifolds);
     }
     catch (const InputError &error)
     {
@@ -278,17 +312,28 @@ namespace Nodus
     if (failed > 0)
       throw InputError("The bodies could not be read on " + std::to_string(failed) +
                        " other ranks; is the folder of the mesh files visible from every machine?");
+    // manifolds belong to lines and faces of all cells, and what carries a rigid body is looked for in all cells
+    const bool refinable = may_be_refined || !manifolds.empty() ||
+                           std::any_of(parameters.begin(),
+                                       parameters.end(),
+                                       [](const BodyParameters &body) {
+                                         return body.rigid || body.global_refinement > 0 || body.local_refinement > 0;
+                                       });
+    if (refinable)
+      make_refinable(mesh, manifolds, communicator);
+    else
+      make_share(mesh, slaves, communicator);
     refine(parameters);
     collect_extents();
   }
 
-  void Bodies::create(const std::vector<BodyParameters> &parameters)
+  CoarseMesh Bodies::read(const std::vector<BodyParameters> &parameters, Manifolds &manifolds)
   {
     if (parameters.empty())
       throw InputError("There is no body; add a subsection 'Body 1'");
 
-    CoarseMesh  all;
-    ManifoldMap manifolds;
+    CoarseMesh                      all;
+    std::map<std::string, GmshFile> files;
     for (unsigned int b = 0; b < parameters.size(); ++b)
       try
       {
@@ -303,7 +348,7 @@ namespace Nodus
         const Placement placement(body);
         CoarseMesh      mesh;
         if (!body.mesh_file.empty())
-          mesh = read_gmsh(body.mesh_file, body.volume_ids);
+          mesh = files.try_emplace(body.mesh_file, body.mesh_file).first->second.body(body.volume_ids);
         else
         {
           generated_.push_back(generate(body));
@@ -333,12 +378,41 @@ namespace Nodus
       if (!has_mesh_[b])
         append(around, b, all);
 
+    return all;
+  }
+
+  void Bodies::make_refinable(const CoarseMesh &mesh, const Manifolds &manifolds, const MPI_Comm communicator)
+  {
+    auto triangulation = std::make_unique<RefinableTriangulation>(communicator);
+    refinable_         = triangulation.get();
+    triangulation_     = std::move(triangulation);
     // merge_triangulations would lose the boundary ids and weld bodies that touch.
-    triangulation_.create_triangulation(all.vertices, all.cells, all.boundary);
+    triangulation_->create_triangulation(mesh.vertices, mesh.cells, mesh.boundary);
     for (const auto &[id, manifold] : manifolds)
-      triangulation_.set_manifold(id, *manifold);
+      triangulation_->set_manifold(id, *manifold);
     if (!curved_->empty())
-      triangulation_.signals.post_refinement.connect([this] { place_vertices(); });
+      triangulation_->signals.post_refinement.connect([this] { place_vertices(); });
+  }
+
+  void
+  Bodies::make_share(const CoarseMesh &mesh, const std::vector<RegionParameters> &slaves, const MPI_Comm communicator)
+  {
+    std::vector<unsigned int> weights(mesh.cells.size(), cell_weight);
+    if (const auto cell_of = cells_at_boundary(mesh); !slaves.empty())
+      for (unsigned int q = 0; q < cell_of.size(); ++q)
+        for (const RegionParameters &slave : slaves)
+          if (mesh.cells[cell_of[q]].material_id + 1 == slave.body &&
+              std::find(slave.boundary_ids.begin(),
+                        slave.boundary_ids.end(),
+                        mesh.boundary.boundary_quads[q].boundary_id) != slave.boundary_ids.end())
+            weights[cell_of[q]] += slave_face_weight;
+    const auto owner = divide(mesh, weights, dealii::Utilities::MPI::n_mpi_processes(communicator));
+    triangulation_   = std::make_unique<dealii::parallel::fullydistributed::Triangulation<dim>>(communicator);
+    const auto share = share_of(mesh, owner, no_boundary, communicator);
+    triangulation_->create_triangulation(share);
+    curved_->set_ids_are_numbers();
+    const auto &held = share.coarse_cell_index_to_coarse_cell_id; // ascending
+    curved_->keep([&held](const unsigned int cell) { return std::binary_search(held.begin(), held.end(), cell); });
   }
 
   /// Refinement puts new vertices on straight edges; they belong on the curved cell of the file. Every rank knows all
@@ -348,7 +422,7 @@ namespace Nodus
     std::vector<Point> unit;
     for (const unsigned int v : dealii::GeometryInfo<dim>::vertex_indices())
       unit.push_back(dealii::GeometryInfo<dim>::unit_cell_vertex(v));
-    for (const auto &cell : triangulation_.active_cell_iterators())
+    for (const auto &cell : triangulation_->active_cell_iterators())
       if (cell->level() > 0 && curved_->covers(cell))
       {
         const auto x = curved_->positions(cell, unit);
@@ -377,7 +451,7 @@ namespace Nodus
     std::vector<unsigned int> n_local(parameters.size(), 0); // cells that are split locally
     for (unsigned int level = 0; level < n_levels; ++level)
     {
-      for (const auto &cell : triangulation_.active_cell_iterators())
+      for (const auto &cell : triangulation_->active_cell_iterators())
         if (cell->is_locally_owned())
         {
           const unsigned int    b    = cell->material_id();
@@ -390,9 +464,9 @@ namespace Nodus
             ++n_local[b];
           }
         }
-      triangulation_.execute_coarsening_and_refinement();
+      triangulation_->execute_coarsening_and_refinement();
     }
-    dealii::Utilities::MPI::sum(n_local, triangulation_.get_communicator(), n_local);
+    dealii::Utilities::MPI::sum(n_local, triangulation_->get_communicator(), n_local);
     for (unsigned int b = 0; b < parameters.size(); ++b)
       if (parameters[b].local_refinement > 0 && n_local[b] == 0)
         throw InputError(
@@ -403,26 +477,34 @@ namespace Nodus
 
   void Bodies::balance(const std::function<unsigned int(const Triangulation::cell_iterator &)> &weight)
   {
-    triangulation_.signals.weight.connect(
+    if (!refinable_)
+      return;
+    refinable_->signals.weight.connect(
         [weight](const Triangulation::cell_iterator &cell, const Triangulation::CellStatus) { return weight(cell); });
-    triangulation_.repartition();
+    refinable_->repartition();
   }
 
   void Bodies::collect_extents()
   {
-    // Every rank holds all coarse cells, hence all boundary ids, ...
+    std::set<std::pair<unsigned int, dealii::types::boundary_id>> ids; // by body
+    for (const auto &cell : triangulation_->active_cell_iterators())
+      if (cell->is_locally_owned() && cell->at_boundary())
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary() && face->boundary_id() != no_boundary)
+            ids.emplace(cell->material_id(), face->boundary_id());
+    std::vector<unsigned int> own;
+    for (const auto &[body, id] : ids)
+      own.insert(own.end(), {body, id});
     boundary_ids_.resize(size());
-    for (const auto &cell : triangulation_.cell_iterators_on_level(0))
-      for (const auto &face : cell->face_iterators())
-        if (face->at_boundary() && face->boundary_id() != no_boundary)
-          boundary_ids_[cell->material_id()].insert(face->boundary_id());
+    for (const auto &part : dealii::Utilities::MPI::all_gather(triangulation_->get_communicator(), own))
+      for (unsigned int i = 0; i < part.size(); i += 2)
+        boundary_ids_[part[i]].insert(part[i + 1]);
 
-    // ... but a curved body grows when it is refined, and the fine vertices are spread over the ranks. Cells of
-    // second-order files are wider than their vertices tell.
+    // Cells of second-order files are wider than their vertices tell.
     constexpr double         infinity = std::numeric_limits<double>::infinity();
     std::vector<double>      lower(dim * size(), infinity), upper(dim * size(), infinity); // upper: negative maxima
     const std::vector<Point> quadratic_nodes = dealii::FE_Q<dim>(2).get_unit_support_points();
-    for (const auto &cell : triangulation_.active_cell_iterators())
+    for (const auto &cell : triangulation_->active_cell_iterators())
       if (cell->is_locally_owned())
       {
         std::vector<Point> points;
@@ -438,8 +520,8 @@ namespace Nodus
             upper[i]     = std::min(upper[i], -x[d]);
           }
       }
-    dealii::Utilities::MPI::min(lower, triangulation_.get_communicator(), lower);
-    dealii::Utilities::MPI::min(upper, triangulation_.get_communicator(), upper);
+    dealii::Utilities::MPI::min(lower, triangulation_->get_communicator(), lower);
+    dealii::Utilities::MPI::min(upper, triangulation_->get_communicator(), upper);
     for (unsigned int b = 0; b < size(); ++b)
     {
       Point low, high;

@@ -92,14 +92,6 @@ namespace Nodus
         lengths *= columns[d].norm();
       return lengths > 0. ? dealii::determinant(columns) / lengths : 0.;
     }
-
-    /// Not that of the CellId, which numbers the coarse cells in p4est's order.
-    unsigned int coarse_index(CurvedGeometry::Cell cell)
-    {
-      while (cell->level() > 0)
-        cell = cell->parent();
-      return cell->index();
-    }
   } // namespace
 
   QuadraticCell QuadraticCell::from_gmsh(const std::vector<Point> &nodes)
@@ -168,9 +160,18 @@ namespace Nodus
     return smallest;
   }
 
+  unsigned int CurvedGeometry::coarse_cell(Cell cell) const
+  {
+    if (ids_are_numbers_)
+      return cell->id().get_coarse_cell_id();
+    while (cell->level() > 0) // p4est has an order of its own for the ids
+      cell = cell->parent();
+    return cell->index();
+  }
+
   bool CurvedGeometry::covers(const Cell &cell) const
   {
-    return !empty() && cells_.count(coarse_index(cell)) > 0;
+    return !empty() && cells_.count(coarse_cell(cell)) > 0;
   }
 
   std::vector<Point> CurvedGeometry::positions(const Cell &cell, const std::vector<Point> &unit) const
@@ -185,7 +186,7 @@ namespace Nodus
       for (unsigned int d = 0; d < dim; ++d)
         corner[d] += (child >> d & 1) * size;
     }
-    const QuadraticCell &ancestor = cells_.at(coarse_index(cell));
+    const QuadraticCell &ancestor = cells_.at(coarse_cell(cell));
     std::vector<Point>   result;
     result.reserve(unit.size());
     for (const Point &p : unit)

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
+#include <string_view>
 #include <unordered_map>
 
 namespace Nodus
@@ -17,22 +20,42 @@ namespace Nodus
   namespace
   {
     using PhysicalIds = std::vector<int>;
+    using Face        = std::array<unsigned int, 4>;
+  } // namespace
 
-    /// What of an element matters here; nodes index into Raw::vertices, the corners come first.
-    struct Element
+  /// The file as it is, before any selection.
+  struct GmshFile::Content
+  {
+    /// Groups index into physical, nodes into vertices, the corners first.
+    struct Hexahedron
     {
-      PhysicalIds               physical;
-      std::vector<unsigned int> nodes;
+      unsigned int group, first_node;
     };
+    struct Quadrilateral
+    {
+      unsigned int group;
+      Face         corners;
+    };
+    struct Other
+    {
+      unsigned int group;
+      const char  *type;
+    };
+    std::vector<Point>         vertices;
+    std::vector<PhysicalIds>   physical; ///< combinations of ids that elements have
+    std::vector<Hexahedron>    hexahedra;
+    std::vector<unsigned int>  nodes; ///< of the hexahedra
+    unsigned int               n_nodes_per_hexahedron = 8;
+    std::vector<Quadrilateral> quadrilaterals;
+    std::vector<Other>         others; ///< volume elements that are no hexahedra
+  };
 
-    /// The file as it is, before any selection.
-    struct Raw
+  namespace
+  {
+    [[noreturn]] void refuse(const std::string &file, const std::string &reason)
     {
-      std::vector<Point>                               vertices;
-      std::unordered_map<long, unsigned int>           index; ///< node tag -> index into vertices
-      std::vector<Element>                             quadrilaterals, hexahedra;
-      std::vector<std::pair<std::string, PhysicalIds>> others; ///< volume elements that are no hexahedra
-    };
+      throw InputError("mesh file " + file + ": " + reason);
+    }
 
     /// Reads one file; every failure carries its name.
     class Reader
@@ -40,56 +63,87 @@ namespace Nodus
     public:
       explicit Reader(const std::string &file)
           : file_(file)
-          , in_(file)
       {
-        if (!in_)
+        std::ifstream in(file, std::ios::binary);
+        if (!in)
           fail("cannot be opened; the path is relative to the folder of the .prm file");
+        text_.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+        here_ = text_.data();
+        end_  = here_ + text_.size();
       }
 
-      Raw read()
+      GmshFile::Content read()
       {
         std::string version;
-        for (std::string section; in_ >> section;)
+        for (std::string_view section; !(section = word()).empty();)
         {
           // A file may hold sections that say nothing about the mesh (names, periodicity, fields): skip them whole.
           if (section == "$MeshFormat")
             version = read_format();
           else if (version.empty())
-            fail("is not a gmsh .msh file: it does not start with $MeshFormat");
+            break;
           else if (section == "$Entities")
             read_entities();
           else if (section == "$Nodes")
             version == "2.2" ? read_nodes_22() : read_nodes_41();
           else if (section == "$Elements")
             version == "2.2" ? read_elements_22() : read_elements_41();
-          else if (!section.empty() && section[0] == '$' && section.compare(0, 4, "$End") != 0)
-            for (std::string line; std::getline(in_, line) && line.compare(0, 4, "$End") != 0;)
-              ;
+          else if (section[0] == '$' && section.substr(0, 4) != "$End")
+            skip_section();
         }
         if (version.empty())
           fail("is not a gmsh .msh file: it does not start with $MeshFormat");
-        return std::move(raw_);
-      }
-
-      [[noreturn]] void fail(const std::string &reason) const
-      {
-        throw InputError("mesh file " + file_ + ": " + reason);
+        return std::move(content_);
       }
 
     private:
+      [[noreturn]] void fail(const std::string &reason) const
+      {
+        refuse(file_, reason);
+      }
+
+      static bool is_space(const char c)
+      {
+        return c == ' ' || (c >= '\t' && c <= '\r');
+      }
+
+      /// The next word, empty at the end of the file.
+      std::string_view word()
+      {
+        while (here_ != end_ && is_space(*here_))
+          ++here_;
+        const char *const begin = here_;
+        while (here_ != end_ && !is_space(*here_))
+          ++here_;
+        return std::string_view(begin, here_ - begin);
+      }
+
+      /// From here to behind the line that ends the section.
+      void skip_section()
+      {
+        const std::string_view rest(here_, end_ - here_);
+        const auto             last = rest.find("\n$End");
+        here_                       = last == std::string_view::npos ? end_ : here_ + last + 1;
+        word();
+      }
+
       template <typename Number>
       Number next()
       {
-        Number value;
-        if (!(in_ >> value))
+        while (here_ != end_ && (is_space(*here_) || *here_ == '+'))
+          ++here_;
+        Number     value{};
+        const auto result = std::from_chars(here_, end_, value);
+        if (result.ec != std::errc() || (result.ptr != end_ && !is_space(*result.ptr)))
           fail("ends early or holds text where a number belongs; write it again with gmsh");
+        here_ = result.ptr;
         return value;
       }
 
       std::string read_format()
       {
-        const auto version = next<std::string>();
-        const bool binary  = next<int>() != 0;
+        const std::string version(word());
+        const bool        binary = next<int>() != 0;
         if (binary)
           fail("is binary: save with Mesh.Binary=0");
         if (version != "2.2" && version != "4.1")
@@ -97,12 +151,20 @@ namespace Nodus
         return version;
       }
 
-      PhysicalIds read_physical_ids()
+      unsigned int group_of(PhysicalIds ids)
+      {
+        const auto [group, is_new] = group_.try_emplace(std::move(ids), content_.physical.size());
+        if (is_new)
+          content_.physical.push_back(group->first);
+        return group->second;
+      }
+
+      unsigned int read_physical_ids()
       {
         PhysicalIds ids(next<std::size_t>());
         for (int &id : ids)
           id = std::abs(next<int>()); // the sign holds the orientation only
-        return ids;
+        return group_of(std::move(ids));
       }
 
       /// Which physical groups each curve, surface, ... is in (4.1 only).
@@ -129,13 +191,14 @@ namespace Nodus
         Point p;
         for (unsigned int d = 0; d < dim; ++d)
           p[d] = next<double>();
-        raw_.index[tag] = raw_.vertices.size();
-        raw_.vertices.push_back(p);
+        index_[tag] = content_.vertices.size();
+        content_.vertices.push_back(p);
       }
 
       void read_nodes_22()
       {
-        for (auto n = next<std::size_t>(); n > 0; --n)
+        const auto n = next<std::size_t>();
+        for (std::size_t i = 0; i < n; ++i)
           read_vertex(next<long>());
       }
 
@@ -163,14 +226,15 @@ namespace Nodus
 
       void read_elements_22()
       {
+        std::vector<int> tags;
         for (auto n = next<std::size_t>(); n > 0; --n)
         {
           next<long>(); // element number
-          const auto       type = next<int>();
-          std::vector<int> tags(next<std::size_t>());
+          const auto type = next<int>();
+          tags.resize(next<std::size_t>());
           for (int &tag : tags)
             tag = next<int>();
-          read_element(type, tags.empty() || tags[0] == 0 ? PhysicalIds() : PhysicalIds{std::abs(tags[0])});
+          read_element(type, group_of(tags.empty() || tags[0] == 0 ? PhysicalIds() : PhysicalIds{std::abs(tags[0])}));
         }
       }
 
@@ -181,22 +245,20 @@ namespace Nodus
           next<std::size_t>(); // number of elements, smallest and largest tag
         for (std::size_t block = 0; block < n_blocks; ++block)
         {
-          const auto  dimension = next<int>();
-          const auto  tag       = next<int>();
-          const auto  type      = next<int>();
-          const auto  entity    = entities_.find({dimension, tag});
-          PhysicalIds physical;
-          if (entity != entities_.end())
-            physical = entity->second;
+          const auto         dimension = next<int>();
+          const auto         tag       = next<int>();
+          const auto         type      = next<int>();
+          const auto         entity    = entities_.find({dimension, tag});
+          const unsigned int group     = entity != entities_.end() ? entity->second : group_of({});
           for (auto n = next<std::size_t>(); n > 0; --n)
           {
             next<long>(); // element number
-            read_element(type, physical);
+            read_element(type, group);
           }
         }
       }
 
-      void read_element(const int type, const PhysicalIds &physical)
+      void read_element(const int type, const unsigned int group)
       {
         // gmsh's types 1 to 19 are the elements of first and second order
         static constexpr unsigned int n_nodes[20] = {0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13};
@@ -204,39 +266,43 @@ namespace Nodus
           fail("holds elements of gmsh type " + std::to_string(type) +
                ", nodus reads those of first and second order only: save with Mesh.ElementOrder=2 or 1");
 
-        Element element{physical, std::vector<unsigned int>(n_nodes[type])};
-        for (unsigned int &node : element.nodes)
+        std::array<unsigned int, 27> nodes;
+        for (unsigned int i = 0; i < n_nodes[type]; ++i)
         {
           const auto tag   = next<long>();
-          const auto index = raw_.index.find(tag);
-          if (index == raw_.index.end())
+          const auto index = index_.find(tag);
+          if (index == index_.end())
             fail("uses node " + std::to_string(tag) + ", which it does not define; write it again with gmsh");
-          node = index->second;
+          nodes[i] = index->second;
         }
         const auto is = [type](const std::initializer_list<int> types)
         { return std::find(types.begin(), types.end(), type) != types.end(); };
         if (is({3, 10, 16}))
-          raw_.quadrilaterals.push_back(std::move(element));
+          content_.quadrilaterals.push_back({group, {{nodes[0], nodes[1], nodes[2], nodes[3]}}});
         else if (is({5, 12, 17}))
         {
-          if (!raw_.hexahedra.empty() && raw_.hexahedra[0].nodes.size() != element.nodes.size())
-            fail("mixes hexahedra of " + std::to_string(raw_.hexahedra[0].nodes.size()) + " and of " +
-                 std::to_string(element.nodes.size()) +
+          if (!content_.hexahedra.empty() && content_.n_nodes_per_hexahedron != n_nodes[type])
+            fail("mixes hexahedra of " + std::to_string(content_.n_nodes_per_hexahedron) + " and of " +
+                 std::to_string(n_nodes[type]) +
                  " nodes: save the whole mesh with one Mesh.ElementOrder and one Mesh.SecondOrderIncomplete");
-          raw_.hexahedra.push_back(std::move(element));
+          content_.n_nodes_per_hexahedron = n_nodes[type];
+          content_.hexahedra.push_back({group, static_cast<unsigned int>(content_.nodes.size())});
+          content_.nodes.insert(content_.nodes.end(), nodes.begin(), nodes.begin() + n_nodes[type]);
         }
         else if (is({4, 11}))
-          raw_.others.emplace_back("tetrahedra", physical);
+          content_.others.push_back({group, "tetrahedra"});
         else if (is({6, 13, 18}))
-          raw_.others.emplace_back("prisms", physical);
+          content_.others.push_back({group, "prisms"});
         else if (is({7, 14, 19}))
-          raw_.others.emplace_back("pyramids", physical);
+          content_.others.push_back({group, "pyramids"});
       }
 
-      std::string                                file_;
-      std::ifstream                              in_;
-      Raw                                        raw_;
-      std::map<std::pair<int, int>, PhysicalIds> entities_;
+      std::string                                 file_, text_;
+      const char                                 *here_ = nullptr, *end_ = nullptr;
+      GmshFile::Content                           content_;
+      std::unordered_map<long, unsigned int>      index_; ///< node tag -> index into vertices
+      std::map<PhysicalIds, unsigned int>         group_;
+      std::map<std::pair<int, int>, unsigned int> entities_; ///< group of each curve, surface, ...
     };
 
     std::string list(const std::set<int> &ids)
@@ -247,8 +313,6 @@ namespace Nodus
       return ids.empty() ? "none" : text.str();
     }
 
-    using Face = std::array<unsigned int, 4>;
-
     Face sorted(Face face)
     {
       std::sort(face.begin(), face.end());
@@ -256,7 +320,7 @@ namespace Nodus
     }
 
     /// The faces that belong to a single cell, sorted corners in ascending order.
-    std::vector<Face> boundary_faces(const std::vector<dealii::CellData<dim>> &cells, const Reader &reader)
+    std::vector<Face> boundary_faces(const std::vector<dealii::CellData<dim>> &cells, const std::string &file)
     {
       std::vector<Face> all, once;
       all.reserve(6 * cells.size());
@@ -275,84 +339,100 @@ namespace Nodus
         if (last - first == 1)
           once.push_back(*first);
         else if (last - first > 2)
-          reader.fail("a face is shared by more than two hexahedra: cells overlap, or a volume is in two physical "
-                      "groups; give each volume one physical id");
+          refuse(file,
+                 "a face is shared by more than two hexahedra: cells overlap, or a volume is in two physical "
+                 "groups; give each volume one physical id");
         first = last;
       }
       return once;
     }
   } // namespace
 
-  CoarseMesh read_gmsh(const std::string &file, const std::vector<unsigned int> &volume_ids)
+  GmshFile::GmshFile(const std::string &name)
+      : name_(name)
+      , content_(std::make_unique<Content>(Reader(name).read()))
   {
-    Reader reader(file);
-    Raw    raw = reader.read();
+  }
+  GmshFile::~GmshFile()                    = default;
+  GmshFile::GmshFile(GmshFile &&) noexcept = default;
 
-    const auto selected = [&](const PhysicalIds &physical)
-    {
-      return volume_ids.empty() ||
-             std::any_of(physical.begin(),
-                         physical.end(),
-                         [&](const int id)
-                         { return std::find(volume_ids.begin(), volume_ids.end(), id) != volume_ids.end(); });
-    };
+  CoarseMesh GmshFile::body(const std::vector<unsigned int> &volume_ids) const
+  {
+    const Content    &file = *content_;
+    std::vector<char> selected; // by group
+    for (const PhysicalIds &physical : file.physical)
+      selected.push_back(volume_ids.empty() ||
+                         std::any_of(physical.begin(),
+                                     physical.end(),
+                                     [&](const int id) {
+                                       return std::find(volume_ids.begin(), volume_ids.end(), id) != volume_ids.end();
+                                     }));
 
-    std::set<int> present;
-    for (const auto &hexahedron : raw.hexahedra)
-      present.insert(hexahedron.physical.begin(), hexahedron.physical.end());
-    for (const auto &[type, physical] : raw.others)
+    std::vector<char> has_volume(file.physical.size(), 0);
+    for (const auto &hexahedron : file.hexahedra)
+      has_volume[hexahedron.group] = 1;
+    for (const auto &other : file.others)
     {
-      if (selected(physical))
-        reader.fail("holds " + type +
-                    ", nodus needs hexahedra only: use transfinite or extruded volumes with Recombine, or select "
-                    "other volumes with 'Volume ids'");
-      present.insert(physical.begin(), physical.end());
+      if (selected[other.group])
+        refuse(name_,
+               "holds " + std::string(other.type) +
+                   ", nodus needs hexahedra only: use transfinite or extruded volumes with Recombine, or select "
+                   "other volumes with 'Volume ids'");
+      has_volume[other.group] = 1;
     }
-    if (raw.hexahedra.empty())
-      reader.fail("holds no hexahedra; check that the volumes are meshed (gmsh -3) and, where the file has physical "
-                  "groups, that the volumes are in one");
+    std::set<int> present;
+    for (unsigned int g = 0; g < has_volume.size(); ++g)
+      if (has_volume[g])
+        present.insert(file.physical[g].begin(), file.physical[g].end());
+    if (file.hexahedra.empty())
+      refuse(name_,
+             "holds no hexahedra; check that the volumes are meshed (gmsh -3) and, where the file has physical "
+             "groups, that the volumes are in one");
     for (const unsigned int id : volume_ids)
       if (present.count(id) == 0)
-        reader.fail("has no volume with physical id " + std::to_string(id) + "; ids present: " + list(present));
+        refuse(name_, "has no volume with physical id " + std::to_string(id) + "; ids present: " + list(present));
 
     CoarseMesh mesh;
-    for (const auto &hexahedron : raw.hexahedra)
-      if (selected(hexahedron.physical))
+    for (const auto &hexahedron : file.hexahedra)
+      if (selected[hexahedron.group])
       {
+        const unsigned int   *nodes = file.nodes.data() + hexahedron.first_node;
         dealii::CellData<dim> cell;
         for (unsigned int v = 0; v < 8; ++v)
-          cell.vertices[dealii::GeometryInfo<dim>::ucd_to_deal[v]] = hexahedron.nodes[v];
+          cell.vertices[dealii::GeometryInfo<dim>::ucd_to_deal[v]] = nodes[v];
         mesh.cells.push_back(cell);
-        if (hexahedron.nodes.size() > 8)
+        if (file.n_nodes_per_hexahedron > 8)
         {
-          std::vector<Point> nodes;
-          for (const unsigned int node : hexahedron.nodes)
-            nodes.push_back(raw.vertices[node]);
-          mesh.curved.push_back(QuadraticCell::from_gmsh(nodes));
+          std::vector<Point> points;
+          for (unsigned int i = 0; i < file.n_nodes_per_hexahedron; ++i)
+            points.push_back(file.vertices[nodes[i]]);
+          mesh.curved.push_back(QuadraticCell::from_gmsh(points));
         }
       }
 
-    const std::vector<Face> boundary = boundary_faces(mesh.cells, reader);
+    const std::vector<Face> boundary = boundary_faces(mesh.cells, name_);
     std::map<Face, int>     id_of_face;
-    for (const auto &quadrilateral : raw.quadrilaterals)
+    for (const auto &quadrilateral : file.quadrilaterals)
     {
-      if (quadrilateral.physical.empty())
+      const PhysicalIds &physical = file.physical[quadrilateral.group];
+      if (physical.empty())
         continue;
-      const auto &c    = quadrilateral.nodes;
-      const Face  face = sorted({{c[0], c[1], c[2], c[3]}});
+      const Face &c    = quadrilateral.corners;
+      const Face  face = sorted(c);
       if (!std::binary_search(boundary.begin(), boundary.end(), face))
         continue; // of another body, or inside this one
 
-      std::set<int> ids(quadrilateral.physical.begin(), quadrilateral.physical.end());
+      std::set<int> ids(physical.begin(), physical.end());
       const auto    other = id_of_face.find(face);
       if (other != id_of_face.end())
         ids.insert(other->second);
       if (ids.size() > 1)
       {
         std::ostringstream where;
-        where << 0.25 * (raw.vertices[c[0]] + raw.vertices[c[1]] + raw.vertices[c[2]] + raw.vertices[c[3]]);
-        reader.fail("the face at " + where.str() + " has the physical ids " + list(ids) +
-                    "; give each surface one physical id");
+        where << 0.25 * (file.vertices[c[0]] + file.vertices[c[1]] + file.vertices[c[2]] + file.vertices[c[3]]);
+        refuse(name_,
+               "the face at " + where.str() + " has the physical ids " + list(ids) +
+                   "; give each surface one physical id");
       }
       if (other != id_of_face.end())
         continue;
@@ -364,7 +444,7 @@ namespace Nodus
       mesh.boundary.boundary_quads.push_back(data);
     }
 
-    mesh.vertices = std::move(raw.vertices);
+    mesh.vertices = file.vertices;
     dealii::GridTools::delete_unused_vertices(mesh.vertices, mesh.cells, mesh.boundary);
     const std::vector<dealii::CellData<dim>> before = mesh.cells;
     // A body that was mirrored, or extruded downwards, has its nodes in the other order; tangled cells are caught

@@ -37,7 +37,7 @@ namespace Nodus
   {
     /// Takes back coarsening that cannot be: of a part of the eight, or beside cells that would be two levels finer. On
     /// the parts of the ranks deal.II would find less of it than on the whole mesh; here all see the same.
-    void keep_possible_coarsening(Bodies::Triangulation &triangulation)
+    void keep_possible_coarsening(Bodies::RefinableTriangulation &triangulation)
     {
       enum Flag : char
       {
@@ -89,7 +89,7 @@ namespace Nodus
                   const std::vector<BodyParameters> &bodies,
                   const RefinementIndicator         &indicator,
                   const DoFIndex                     n_unknowns,
-                  Bodies::Triangulation             &triangulation)
+                  Bodies::RefinableTriangulation    &triangulation)
   {
     using Marking                       = AdaptivityParameters::Marking;
     namespace GridRefinement            = dealii::parallel::distributed::GridRefinement;

@@ -19,7 +19,7 @@ namespace Nodus
     HistoryTransfer(const SolidAssembler                         &solid,
                     const std::vector<std::unique_ptr<Material>> &materials,
                     unsigned int                                  degree,
-                    Bodies::Triangulation                        &triangulation);
+                    Bodies::RefinableTriangulation               &triangulation);
     ~HistoryTransfer();
     /// After it, with the new assembler. Collective.
     void finish(SolidAssembler &solid);

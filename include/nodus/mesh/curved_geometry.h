@@ -7,6 +7,7 @@
 #include <deal.II/grid/tria.h>
 
 #include <array>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <vector>
@@ -38,10 +39,25 @@ namespace Nodus
   public:
     using Cell = dealii::Triangulation<dim>::cell_iterator;
 
-    /// @p coarse_cell counts the cells in the order of create_triangulation.
+    /// Number of the coarse ancestor of @p cell, of any level, in the order in which all coarse cells came.
+    unsigned int coarse_cell(Cell cell) const;
+    /// From now on the cells are those of a mesh whose coarse cells kept their numbers as ids, some of which are not
+    /// held here.
+    void set_ids_are_numbers()
+    {
+      ids_are_numbers_ = true;
+    }
+
     void add(const unsigned int coarse_cell, const QuadraticCell &cell)
     {
       cells_[coarse_cell] = cell;
+    }
+    /// Forgets the cells for which @p held does not hold.
+    template <typename Predicate>
+    void keep(const Predicate &held)
+    {
+      for (auto cell = cells_.begin(); cell != cells_.end();)
+        cell = held(cell->first) ? std::next(cell) : cells_.erase(cell);
     }
     bool empty() const
     {
@@ -55,6 +71,7 @@ namespace Nodus
 
   private:
     std::map<unsigned int, QuadraticCell> cells_;
+    bool                                  ids_are_numbers_ = false;
   };
 
   /// MappingQ whose cells follow the CurvedGeometry where that covers them. Unlike MappingQCache it needs no

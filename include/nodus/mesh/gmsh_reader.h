@@ -6,6 +6,7 @@
 
 #include <deal.II/grid/tria_description.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,15 +21,30 @@ namespace Nodus
     std::vector<QuadraticCell>         curved;   ///< one per cell of a second-order file, else empty
   };
 
-  /// Reads the hexahedra of a gmsh file (ASCII, version 2.2 or 4.1; 8, 20 or 27 nodes), only those whose physical
-  /// volume is in @p volume_ids unless that is empty. The boundary id of a face is its physical surface.
+  /// A gmsh file (ASCII, version 2.2 or 4.1), of which several bodies may take their volumes.
   ///
   /// Not GridIn::read_msh: bodies are cut out here before a triangulation exists, so that two bodies may come from one
   /// file whose volumes share the nodes of their interface, and a physical surface inside a body is ignored; GridIn
   /// throws for both, and for second-order files.
   ///
   /// @throws InputError: the message starts with the file name and ends with the fix.
-  CoarseMesh read_gmsh(const std::string &file, const std::vector<unsigned int> &volume_ids);
+  class GmshFile
+  {
+  public:
+    explicit GmshFile(const std::string &name);
+    ~GmshFile();
+    GmshFile(GmshFile &&) noexcept;
+
+    /// The hexahedra (8, 20 or 27 nodes) whose physical volume is in @p volume_ids, or all if that is empty. The
+    /// boundary id of a face is its physical surface.
+    CoarseMesh body(const std::vector<unsigned int> &volume_ids) const;
+
+    struct Content;
+
+  private:
+    std::string              name_;
+    std::unique_ptr<Content> content_;
+  };
 } // namespace Nodus
 
 #endif

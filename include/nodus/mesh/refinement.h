@@ -31,7 +31,7 @@ namespace Nodus
                   const std::vector<BodyParameters> &bodies,
                   const RefinementIndicator         &indicator,
                   DoFIndex                           n_unknowns,
-                  Bodies::Triangulation             &triangulation);
+                  Bodies::RefinableTriangulation    &triangulation);
 } // namespace Nodus
 
 #endif

@@ -31,7 +31,7 @@ namespace Nodus
 
     struct Piece
     {
-      using CellKey = std::array<unsigned int, 4>; ///< CellId::to_binary()
+      using CellKey = std::array<unsigned int, 4>; ///< CellId::to_binary() with Bodies::coarse_cell() first
       using FaceKey = std::pair<CellKey, unsigned int>;
       std::vector<std::pair<CellKey, std::vector<double>>> cells;
       std::vector<std::pair<CellKey, std::vector<double>>> histories; ///< of cells with a law that has one

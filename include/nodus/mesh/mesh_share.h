@@ -1,0 +1,26 @@
+#ifndef nodus_mesh_mesh_share_h
+#define nodus_mesh_mesh_share_h
+
+#include <nodus/mesh/gmsh_reader.h>
+
+#include <deal.II/grid/tria_description.h>
+
+#include <vector>
+
+namespace Nodus
+{
+  /// Divides the cells of @p mesh into @p n_parts of equal sums of @p weights (by cell), body after body and along a
+  /// space-filling curve in each. @returns the part of each cell
+  std::vector<unsigned int>
+  divide(const CoarseMesh &mesh, const std::vector<unsigned int> &weights, unsigned int n_parts);
+
+  /// What a rank holds of a mesh that is not refined: the cells that it owns and those that touch them. Coarse cells
+  /// keep their numbers in @p mesh. @param owner rank of each cell @param cut boundary id of faces that are at the
+  /// boundary of the share, but not of the mesh
+  dealii::TriangulationDescription::Description<dim, dim> share_of(const CoarseMesh                &mesh,
+                                                                   const std::vector<unsigned int> &owner,
+                                                                   dealii::types::boundary_id       cut,
+                                                                   MPI_Comm                         communicator);
+} // namespace Nodus
+
+#endif
