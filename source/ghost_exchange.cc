@@ -184,4 +184,37 @@ namespace Nodus
   {
     add(ghosts, owned, n_owned_, n_components);
   }
+
+  std::vector<std::vector<double>>
+  GhostExchange::fetch_lists(const std::function<void(unsigned int, std::vector<double> &)> &append) const
+  {
+    std::map<unsigned int, std::vector<double>> outgoing; // the length of each list, and the list
+    std::size_t                                 n_ghosts = 0;
+    for (const Neighbour &neighbour : neighbours_)
+    {
+      n_ghosts += neighbour.ghosts.size();
+      for (const unsigned int i : neighbour.owned)
+      {
+        std::vector<double> &numbers = outgoing[neighbour.rank];
+        const std::size_t    length  = numbers.size();
+        numbers.push_back(0.);
+        append(i, numbers);
+        numbers[length] = numbers.size() - length - 1;
+      }
+    }
+    const auto                       incoming = some_to_some(communicator_, outgoing);
+    std::vector<std::vector<double>> lists(n_ghosts);
+    for (const Neighbour &neighbour : neighbours_)
+      if (const auto from = incoming.find(neighbour.rank); from != incoming.end())
+      {
+        const double *p = from->second.data();
+        for (const unsigned int i : neighbour.ghosts)
+        {
+          const auto length = static_cast<std::size_t>(*p++);
+          lists[i - n_owned_].assign(p, p + length);
+          p += length;
+        }
+      }
+    return lists;
+  }
 } // namespace Nodus

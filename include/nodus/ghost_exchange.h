@@ -42,6 +42,11 @@ namespace Nodus
     /// Adds the values of ghosts to those of their owners, arrays as in fetch(). Collective.
     void add(const double *ghosts, double *owned, unsigned int n_components = 1) const;
 
+    /// Numbers, as many as there are, for each ghost from its owner, objects numbered through: @p append adds those of
+    /// an owned object to the end. Collective.
+    std::vector<std::vector<double>>
+    fetch_lists(const std::function<void(unsigned int owned, std::vector<double> &)> &append) const;
+
   private:
     using Keys = std::map<unsigned int, std::vector<DoFIndex>>;
     struct Neighbour

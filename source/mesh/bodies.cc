@@ -397,7 +397,7 @@ namespace Nodus
   void
   Bodies::make_share(const CoarseMesh &mesh, const std::vector<RegionParameters> &slaves, const MPI_Comm communicator)
   {
-    std::vector<unsigned int> weights(mesh.cells.size(), cell_weight);
+    std::vector<unsigned int> slave_faces(mesh.cells.size(), 0);
     if (const auto cell_of = cells_at_boundary(mesh); !slaves.empty())
       for (unsigned int q = 0; q < cell_of.size(); ++q)
         for (const RegionParameters &slave : slaves)
@@ -405,8 +405,9 @@ namespace Nodus
               std::find(slave.boundary_ids.begin(),
                         slave.boundary_ids.end(),
                         mesh.boundary.boundary_quads[q].boundary_id) != slave.boundary_ids.end())
-            weights[cell_of[q]] += slave_face_weight;
-    const auto owner = divide(mesh, weights, dealii::Utilities::MPI::n_mpi_processes(communicator));
+            ++slave_faces[cell_of[q]];
+    const auto owner = divide(
+        mesh, slave_faces, cell_weight, slave_face_weight, dealii::Utilities::MPI::n_mpi_processes(communicator));
     triangulation_   = std::make_unique<dealii::parallel::fullydistributed::Triangulation<dim>>(communicator);
     const auto share = share_of(mesh, owner, no_boundary, communicator);
     triangulation_->create_triangulation(share);

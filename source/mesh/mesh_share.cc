@@ -2,11 +2,12 @@
 
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/utilities.h>
 #include <deal.II/grid/cell_id.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -38,6 +39,11 @@ namespace Nodus
     bool any_of(const std::vector<char> &flags, const Cell &cell)
     {
       return std::any_of(cell.vertices.begin(), cell.vertices.end(), [&](const unsigned int v) { return flags[v]; });
+    }
+
+    bool all_of(const std::vector<char> &flags, const Cell &cell)
+    {
+      return std::all_of(cell.vertices.begin(), cell.vertices.end(), [&](const unsigned int v) { return flags[v]; });
     }
 
     /// Faces with the vertices of each, and whether a vertex belongs to any of them.
@@ -74,8 +80,8 @@ namespace Nodus
       // The cell behind has no vertex of an owned cell, or it would be a ghost.
       FaceTable<unsigned int> n_cells(mesh.vertices.size()); // beside the face, among the local ones
       for (std::size_t c = 0; c < mesh.cells.size(); ++c)
-        for (const unsigned int f : Geometry::face_indices())
-          if (const Cell &cell = mesh.cells[c]; is_local[c])
+        if (const Cell &cell = mesh.cells[c]; is_local[c] && !all_of(owned_vertex, cell))
+          for (const unsigned int f : Geometry::face_indices())
             if (const Face face = face_of(cell, f);
                 std::none_of(face.begin(), face.end(), [&](const unsigned int v) { return owned_vertex[v]; }))
               ++n_cells[face];
@@ -87,42 +93,147 @@ namespace Nodus
               cut[face_of(mesh.cells[c], f)] = 1;
       return cut;
     }
+
+    /// Recursive coordinate bisection of all bodies at once, so that surfaces in contact fall to the same parts.
+    class Bisection
+    {
+    public:
+      Bisection(const CoarseMesh                &mesh,
+                const std::vector<unsigned int> &slave_faces,
+                const unsigned int               cell_weight,
+                const unsigned int               face_weight)
+          : slave_faces_(slave_faces)
+          , cell_weight_(cell_weight)
+          , face_weight_(face_weight)
+      {
+        centres_.reserve(mesh.cells.size());
+        for (const Cell &cell : mesh.cells)
+        {
+          Point centre;
+          for (const unsigned int v : cell.vertices)
+            centre += mesh.vertices[v] / 8.;
+          centres_.push_back(centre);
+        }
+      }
+
+      std::vector<unsigned int> divide(const unsigned int n_parts) const
+      {
+        struct Piece
+        {
+          Cells        cells;
+          unsigned int first_part, n_parts;
+        };
+        Cells all(centres_.size());
+        std::iota(all.begin(), all.end(), 0);
+        std::vector<unsigned int> part(all.size(), 0);
+        for (std::vector<Piece> pieces = {{std::move(all), 0, n_parts}}; !pieces.empty();)
+        {
+          const Piece piece = std::move(pieces.back());
+          pieces.pop_back();
+          if (piece.n_parts == 1)
+          {
+            for (const unsigned int c : piece.cells)
+              part[c] = piece.first_part;
+            continue;
+          }
+          const unsigned int n_lower = piece.n_parts / 2;
+          const double       share   = double(n_lower) / piece.n_parts;
+          Cut                best    = cut(piece.cells, 0, share);
+          for (unsigned int d = 1; d < dim; ++d)
+            if (Cut other = cut(piece.cells, d, share); other.cost < best.cost)
+              best = std::move(other);
+          pieces.push_back({std::move(best.lower), piece.first_part, n_lower});
+          pieces.push_back({std::move(best.upper), piece.first_part + n_lower, piece.n_parts - n_lower});
+        }
+        return part;
+      }
+
+    private:
+      using Cells = std::vector<unsigned int>;
+      struct Cut
+      {
+        Cells  lower, upper;
+        double cost;
+      };
+      /// What it costs to leave all slave faces to one part, when a cut across the longest side costs one.
+      static constexpr double one_sided_contact = 4.;
+      /// Of the weight of a part, by which a cut may miss it for the sake of a plane between layers of cells.
+      static constexpr double tolerance = 0.01;
+
+      /// The lower part gets @p share of the weight.
+      Cut cut(const Cells &cells, const unsigned int direction, const double share) const
+      {
+        std::vector<std::pair<double, unsigned int>> order; // position and cell
+        order.reserve(cells.size());
+        for (const unsigned int c : cells)
+          order.emplace_back(centres_[c][direction], c);
+        std::sort(order.begin(), order.end());
+        const auto weight = [&](const unsigned int c) { return cell_weight_ + double(face_weight_) * slave_faces_[c]; };
+        double     total = 0., n_faces = 0.;
+        for (const auto &[x, c] : order)
+        {
+          total += weight(c);
+          n_faces += slave_faces_[c];
+        }
+        const double wanted = share * total, room = tolerance * std::min(share, 1. - share) * total;
+        double       before = 0., widest = -1.;
+        std::size_t  n_lower = order.size();
+        for (std::size_t k = 0; k < order.size(); ++k)
+        {
+          if (before >= wanted - room && before <= wanted + room && k > 0)
+            if (const double gap = order[k].first - order[k - 1].first; gap > widest)
+            {
+              widest  = gap;
+              n_lower = k;
+            }
+          if (widest < 0. && before > wanted + room)
+          {
+            n_lower = k; // heavier than the room is the last cell
+            break;
+          }
+          before += weight(order[k].second);
+        }
+        Cut result{};
+        for (std::size_t k = 0; k < order.size(); ++k)
+          (k < n_lower ? result.lower : result.upper).push_back(order[k].second);
+        double n_faces_lower = 0.;
+        for (const unsigned int c : result.lower)
+          n_faces_lower += slave_faces_[c];
+
+        if (cells.empty())
+          return result;
+        Point low = centres_[cells[0]], high = low;
+        for (const unsigned int c : cells)
+          for (unsigned int d = 0; d < dim; ++d)
+          {
+            low[d]  = std::min(low[d], centres_[c][d]);
+            high[d] = std::max(high[d], centres_[c][d]);
+          }
+        double longest = 0.;
+        for (unsigned int d = 0; d < dim; ++d)
+          longest = std::max(longest, high[d] - low[d]);
+        const double side = high[direction] - low[direction];
+        result.cost       = side > 0. ? longest / side : std::numeric_limits<double>::max();
+        if (n_faces > 0.)
+          result.cost += 2. * one_sided_contact * std::abs(n_faces_lower / n_faces - share);
+        return result;
+      }
+
+      const std::vector<unsigned int> &slave_faces_;
+      const unsigned int               cell_weight_, face_weight_;
+      std::vector<Point>               centres_;
+    };
   } // namespace
 
-  std::vector<unsigned int>
-  divide(const CoarseMesh &mesh, const std::vector<unsigned int> &weights, const unsigned int n_parts)
+  std::vector<unsigned int> divide(const CoarseMesh                &mesh,
+                                   const std::vector<unsigned int> &slave_faces,
+                                   const unsigned int               cell_weight,
+                                   const unsigned int               face_weight,
+                                   const unsigned int               n_parts)
   {
-    const std::size_t         n_cells = mesh.cells.size();
-    std::vector<unsigned int> part(n_cells, 0);
     if (n_parts == 1)
-      return part;
-    constexpr int      bits = 21; // per direction, in 64
-    std::vector<Point> centres;
-    for (const Cell &cell : mesh.cells)
-    {
-      Point centre;
-      for (const unsigned int v : cell.vertices)
-        centre += mesh.vertices[v] / 8.;
-      centres.push_back(centre);
-    }
-    const auto               curve = dealii::Utilities::inverse_Hilbert_space_filling_curve<dim>(centres, bits);
-    std::vector<std::size_t> order(n_cells);
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(),
-              order.end(),
-              [&](const std::size_t a, const std::size_t b)
-              {
-                const auto body_a = mesh.cells[a].material_id, body_b = mesh.cells[b].material_id;
-                return body_a != body_b ? body_a < body_b : curve[a] != curve[b] ? curve[a] < curve[b] : a < b;
-              });
-    const double total  = std::accumulate(weights.begin(), weights.end(), 0.);
-    double       before = 0.;
-    for (const std::size_t c : order)
-    {
-      part[c] = std::min(static_cast<unsigned int>((before + .5 * weights[c]) * n_parts / total), n_parts - 1);
-      before += weights[c];
-    }
-    return part;
+      return std::vector<unsigned int>(mesh.cells.size(), 0);
+    return Bisection(mesh, slave_faces, cell_weight, face_weight).divide(n_parts);
   }
 
   dealii::TriangulationDescription::Description<dim, dim> share_of(const CoarseMesh                &mesh,

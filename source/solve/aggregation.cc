@@ -226,46 +226,27 @@ namespace Nodus
     blocks_.resize(blocks_.size() + 2, 0.F); // for load()
   }
 
-  /// Rows of P at the ghosts of A, by global aggregate.
-  std::vector<Aggregation::Row> Aggregation::ghost_rows() const
-  {
-    std::vector<DoFIndex> ghosts;
-    for (unsigned int i = nodes_.n_owned(); i < nodes_.size(); ++i)
-      ghosts.push_back(nodes_.global(i));
-    const auto pack = [&](const unsigned int i)
-    {
-      std::vector<double> numbers;
-      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
-      {
-        numbers.push_back(global_aggregate(column_[k]));
-        const float *block = blocks_.data() + block_size * std::size_t(k);
-        numbers.insert(numbers.end(), block, block + block_size);
-      }
-      return numbers;
-    };
-    std::vector<Row> rows(ghosts.size());
-    for (const auto &[node, numbers] : nodes_.ask(ghosts, pack))
-      for (auto p = numbers.begin(); p != numbers.end(); p += block_size)
-      {
-        auto &entry = rows[nodes_.local(node) - nodes_.n_owned()].emplace_back();
-        entry.first = static_cast<DoFIndex>(*p++);
-        std::copy_n(p, block_size, entry.second.begin());
-      }
-    return rows;
-  }
-
   std::unique_ptr<NodeMatrix> Aggregation::make_coarse_matrix(const NodeMatrix &K) const
   {
     // columns of A P: aggregates in the rows of P of all local nodes
-    const std::vector<Row> ghost_rows = this->ghost_rows();
-    const unsigned int     n_owned    = nodes_.n_owned();
-    std::vector<DoFIndex>  columns;
+    const unsigned int    n_owned    = nodes_.n_owned();
+    const auto            ghost_rows = nodes_.lists_at_ghosts( // global aggregates and blocks of P
+        [&](const unsigned int i, std::vector<double> &numbers)
+        {
+          for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+          {
+            const float *block = blocks_.data() + block_size * std::size_t(k);
+            numbers.push_back(global_aggregate(column_[k]));
+            numbers.insert(numbers.end(), block, block + block_size);
+          }
+        });
+    std::vector<DoFIndex> columns;
     for (unsigned int a = 0; a < n_aggregates_ + ghosts_.size(); ++a)
       columns.push_back(global_aggregate(a));
     std::vector<DoFIndex> others;
-    for (const Row &row : ghost_rows)
-      for (const auto &entry : row)
-        others.push_back(entry.first);
+    for (const auto &row : ghost_rows)
+      for (auto p = row.begin(); p != row.end(); p += 1 + block_size)
+        others.push_back(static_cast<DoFIndex>(*p));
     std::sort(others.begin(), others.end());
     others.erase(std::unique(others.begin(), others.end()), others.end());
     const unsigned int n_known = columns.size();
@@ -283,11 +264,19 @@ namespace Nodus
       return found - columns.begin();
     };
 
-    // blocks of P at the ghosts of A, by local column
-    std::vector<std::vector<std::pair<unsigned int, const float *>>> at_ghosts(ghost_rows.size());
-    for (unsigned int g = 0; g < ghost_rows.size(); ++g)
-      for (const auto &entry : ghost_rows[g])
-        at_ghosts[g].emplace_back(column(entry.first), entry.second.data());
+    std::vector<std::size_t>  ghost_start(1, 0);
+    std::vector<unsigned int> ghost_column;
+    std::vector<float>        ghost_blocks;
+    for (const auto &row : ghost_rows)
+    {
+      for (auto p = row.begin(); p != row.end(); p += block_size)
+      {
+        ghost_column.push_back(column(static_cast<DoFIndex>(*p++)));
+        ghost_blocks.insert(ghost_blocks.end(), p, p + block_size);
+      }
+      ghost_start.push_back(ghost_column.size());
+    }
+    ghost_blocks.resize(ghost_blocks.size() + 2, 0.F); // for load()
 
     std::vector<CoarseRow> rows(n_known);
     SparseRow              product;
@@ -304,8 +293,8 @@ namespace Nodus
                      for (std::uint32_t k = start_[j]; k < start_[j + 1]; ++k)
                        add_product(block, transposed, load(&blocks_[block_size * std::size_t(k)]), product[column_[k]]);
                    else
-                     for (const auto &[a, p] : at_ghosts[j - n_owned])
-                       add_product(block, transposed, load(p), product[a]);
+                     for (std::size_t k = ghost_start[j - n_owned]; k < ghost_start[j - n_owned + 1]; ++k)
+                       add_product(block, transposed, load(&ghost_blocks[block_size * k]), product[ghost_column[k]]);
                  });
       for (unsigned int l = 0; l < product.columns().size(); ++l)
       {

@@ -199,35 +199,31 @@ namespace Nodus
 
   void Condensation::fetch_ghost_rows()
   {
-    std::vector<DoFIndex> ghosts;
-    for (unsigned int i = nodes_.n_owned(); i < nodes_.size(); ++i)
-      ghosts.push_back(nodes_.global(i));
-    const auto pack = [&](const unsigned int node)
-    {
-      std::vector<double> numbers;
-      if (const Row *row = rows_[node].get())
-      {
-        append(numbers, row->own);
-        for (const Coupling &other : row->others)
+    const auto lists = nodes_.lists_at_ghosts(
+        [&](const unsigned int node, std::vector<double> &numbers)
         {
-          numbers.push_back(other.node);
-          append(numbers, other.block);
-        }
-      }
-      return numbers;
-    };
-    for (const auto &[node, numbers] : nodes_.ask(ghosts, pack))
-      if (!numbers.empty())
+          if (const Row *row = rows_[node].get())
+          {
+            append(numbers, row->own);
+            for (const Coupling &other : row->others)
+            {
+              numbers.push_back(other.node);
+              append(numbers, other.block);
+            }
+          }
+        });
+    for (unsigned int g = 0; g < lists.size(); ++g)
+      if (!lists[g].empty())
       {
         auto          row = std::make_unique<Row>();
-        const double *p   = numbers.data();
+        const double *p   = lists[g].data();
         row->own          = read(p);
-        while (p != numbers.data() + numbers.size())
+        while (p != lists[g].data() + lists[g].size())
         {
           const auto other = static_cast<DoFIndex>(*p++);
           row->others.push_back({other, read(p)});
         }
-        rows_[nodes_.local(node)] = std::move(row);
+        rows_[nodes_.n_owned() + g] = std::move(row);
       }
   }
 

@@ -9,10 +9,14 @@
 
 namespace Nodus
 {
-  /// Divides the cells of @p mesh into @p n_parts of equal sums of @p weights (by cell), body after body and along a
-  /// space-filling curve in each. @returns the part of each cell
-  std::vector<unsigned int>
-  divide(const CoarseMesh &mesh, const std::vector<unsigned int> &weights, unsigned int n_parts);
+  /// Divides the cells of @p mesh into @p n_parts of equal weights by planes across the axes, and the slave faces along
+  /// with them as evenly as goes: ranks without wait for those with contact. @param slave_faces number by cell
+  /// @returns the part of each cell
+  std::vector<unsigned int> divide(const CoarseMesh                &mesh,
+                                   const std::vector<unsigned int> &slave_faces,
+                                   unsigned int                     cell_weight,
+                                   unsigned int                     face_weight,
+                                   unsigned int                     n_parts);
 
   /// What a rank holds of a mesh that is not refined: the cells that it owns and those that touch them. Coarse cells
   /// keep their numbers in @p mesh. @param owner rank of each cell @param cut boundary id of faces that are at the

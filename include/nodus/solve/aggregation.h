@@ -45,15 +45,12 @@ namespace Nodus
 
   private:
     static constexpr unsigned int block_size = dim * n_modes;
-    /// Global aggregate and block of P, with two values more for reading it in vectors.
-    using Row = std::vector<std::pair<DoFIndex, std::array<float, block_size + 2>>>;
 
     void aggregate(const NodeMatrix &K, const std::vector<double> &modes);
     void make_tentative(std::vector<double> modes);
     void smooth(const NodeMatrix &K, const std::vector<std::array<double, 9>> &D_inverse, double omega);
 
-    std::vector<Row> ghost_rows() const;
-    DoFIndex         global_aggregate(const unsigned int a) const
+    DoFIndex global_aggregate(const unsigned int a) const
     {
       return a < n_aggregates_ ? first_ + a : ghosts_[a - n_aggregates_];
     }

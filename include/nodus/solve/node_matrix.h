@@ -59,6 +59,13 @@ namespace Nodus
     }
     /// Fetches the values at ghosts, to stay until the next call. Collective.
     NodeValues with_ghosts(const double *owned) const;
+    /// Numbers for each ghost, in the order of the local numbers: @p append adds those of an owned node to the end.
+    /// Collective.
+    std::vector<std::vector<double>>
+    lists_at_ghosts(const std::function<void(unsigned int owned, std::vector<double> &)> &append) const
+    {
+      return exchange_.fetch_lists(append);
+    }
     /// Asks the owners of @p nodes (global) for numbers about them; @p answer gets a local number. Collective.
     std::map<DoFIndex, std::vector<double>> ask(const std::vector<DoFIndex>                            &nodes,
                                                 const std::function<std::vector<double>(unsigned int)> &answer) const;
