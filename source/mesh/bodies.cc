@@ -293,25 +293,8 @@ namespace Nodus
                  const std::vector<RegionParameters> &slaves)
       : curved_(std::make_shared<CurvedGeometry>())
   {
-    // Each rank reads the files itself. Should only some fail (a folder that one machine does not see), the others
-    // must not wait for them for ever.
-    CoarseMesh  mesh;
-    Manifolds   manifolds;
-    std::string failure;
-    try
-    {
-      mesh = read(parameters, manifolds);
-    }
-    catch (const InputError &error)
-    {
-      failure = error.what();
-    }
-    const auto failed = dealii::Utilities::MPI::sum(failure.empty() ? 0u : 1u, communicator);
-    if (!failure.empty())
-      throw InputError(failure);
-    if (failed > 0)
-      throw InputError("The bodies could not be read on " + std::to_string(failed) +
-                       " other ranks; is the folder of the mesh files visible from every machine?");
+    Manifolds        manifolds;
+    const CoarseMesh mesh = read(parameters, manifolds, communicator);
     // manifolds belong to lines and faces of all cells, and what carries a rigid body is looked for in all cells
     const bool refinable = may_be_refined || !manifolds.empty() ||
                            std::any_of(parameters.begin(),
@@ -327,7 +310,8 @@ namespace Nodus
     collect_extents();
   }
 
-  CoarseMesh Bodies::read(const std::vector<BodyParameters> &parameters, Manifolds &manifolds)
+  CoarseMesh
+  Bodies::read(const std::vector<BodyParameters> &parameters, Manifolds &manifolds, const MPI_Comm communicator)
   {
     if (parameters.empty())
       throw InputError("There is no body; add a subsection 'Body 1'");
@@ -348,7 +332,9 @@ namespace Nodus
         const Placement placement(body);
         CoarseMesh      mesh;
         if (!body.mesh_file.empty())
-          mesh = files.try_emplace(body.mesh_file, body.mesh_file).first->second.body(body.volume_ids);
+          mesh = from_first_rank(
+              [&] { return files.try_emplace(body.mesh_file, body.mesh_file).first->second.body(body.volume_ids); },
+              communicator);
         else
         {
           generated_.push_back(generate(body));

@@ -1,7 +1,10 @@
 #include <nodus/mesh/mesh_share.h>
+#include <nodus/output/complete_file.h>
+#include <nodus/wait_for_all.h>
 
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/mpi.templates.h>
 #include <deal.II/grid/cell_id.h>
 
 #include <algorithm>
@@ -10,6 +13,8 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <string>
+#include <tuple>
 
 namespace Nodus
 {
@@ -224,6 +229,83 @@ namespace Nodus
       std::vector<Point>               centres_;
     };
   } // namespace
+
+  CoarseMesh from_first_rank(const std::function<CoarseMesh()> &read, const MPI_Comm communicator)
+  {
+    namespace MPI = dealii::Utilities::MPI;
+    if (MPI::n_mpi_processes(communicator) == 1)
+      return read();
+    const bool                first = MPI::this_mpi_process(communicator) == 0;
+    CoarseMesh                mesh;
+    std::vector<double>       positions; // of the vertices, and of the nodes of curved cells
+    std::vector<unsigned int> cells, quads;
+    std::string               failure;
+    if (first)
+      try
+      {
+        mesh = read();
+        for (const Point &x : mesh.vertices)
+          positions.insert(positions.end(), x.begin_raw(), x.end_raw());
+        for (const QuadraticCell &cell : mesh.curved)
+          for (const Point &x : cell.nodes)
+            positions.insert(positions.end(), x.begin_raw(), x.end_raw());
+        for (const Cell &cell : mesh.cells)
+          cells.insert(cells.end(), cell.vertices.begin(), cell.vertices.end());
+        for (const auto &quad : mesh.boundary.boundary_quads)
+        {
+          quads.insert(quads.end(), quad.vertices.begin(), quad.vertices.end());
+          quads.push_back(quad.boundary_id);
+        }
+      }
+      catch (const InputError &error)
+      {
+        failure = error.what();
+      }
+    wait_for_all(communicator);
+    throw_on_every_rank(failure, communicator);
+
+    unsigned int size[] = {static_cast<unsigned int>(mesh.vertices.size()),
+                           static_cast<unsigned int>(mesh.cells.size()),
+                           static_cast<unsigned int>(mesh.boundary.boundary_quads.size()),
+                           static_cast<unsigned int>(mesh.curved.size())};
+    MPI::broadcast(size, 4, 0, communicator);
+    constexpr unsigned int n_nodes = std::tuple_size<decltype(QuadraticCell::nodes)>::value;
+    positions.resize(dim * (size[0] + std::size_t(n_nodes) * size[3]));
+    cells.resize(Geometry::vertices_per_cell * std::size_t(size[1]));
+    quads.resize(5 * std::size_t(size[2]));
+    MPI::broadcast(positions.data(), positions.size(), 0, communicator);
+    MPI::broadcast(cells.data(), cells.size(), 0, communicator);
+    MPI::broadcast(quads.data(), quads.size(), 0, communicator);
+    if (first)
+      return mesh;
+
+    const double *x    = positions.data();
+    const auto    next = [&x]
+    {
+      const Point point(x[0], x[1], x[2]);
+      x += dim;
+      return point;
+    };
+    for (unsigned int i = 0; i < size[0]; ++i)
+      mesh.vertices.push_back(next());
+    mesh.curved.resize(size[3]);
+    for (QuadraticCell &cell : mesh.curved)
+      for (Point &node : cell.nodes)
+        node = next();
+    mesh.cells.resize(size[1]);
+    for (unsigned int c = 0; c < size[1]; ++c)
+      std::copy_n(&cells[Geometry::vertices_per_cell * std::size_t(c)],
+                  Geometry::vertices_per_cell,
+                  mesh.cells[c].vertices.begin());
+    mesh.boundary.boundary_quads.resize(size[2]);
+    for (unsigned int q = 0; q < size[2]; ++q)
+    {
+      auto &quad = mesh.boundary.boundary_quads[q];
+      std::copy_n(&quads[5 * std::size_t(q)], 4, quad.vertices.begin());
+      quad.boundary_id = quads[5 * std::size_t(q) + 4];
+    }
+    return mesh;
+  }
 
   std::vector<unsigned int> divide(const CoarseMesh                &mesh,
                                    const std::vector<unsigned int> &slave_faces,

@@ -110,7 +110,7 @@ namespace Nodus
 
     using Manifolds = std::map<dealii::types::manifold_id, std::unique_ptr<dealii::Manifold<dim>>>;
 
-    CoarseMesh read(const std::vector<BodyParameters> &parameters, Manifolds &manifolds);
+    CoarseMesh read(const std::vector<BodyParameters> &parameters, Manifolds &manifolds, MPI_Comm communicator);
     void       make_share(const CoarseMesh &mesh, const std::vector<RegionParameters> &slaves, MPI_Comm communicator);
     void       make_refinable(const CoarseMesh &mesh, const Manifolds &manifolds, MPI_Comm communicator);
     void       refine(const std::vector<BodyParameters> &parameters);

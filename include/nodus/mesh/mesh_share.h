@@ -5,10 +5,15 @@
 
 #include <deal.II/grid/tria_description.h>
 
+#include <functional>
 #include <vector>
 
 namespace Nodus
 {
+  /// What @p read gives on the first rank, on all of them: it alone reads files. @throws InputError on every rank where
+  /// @p read throws it. Collective.
+  CoarseMesh from_first_rank(const std::function<CoarseMesh()> &read, MPI_Comm communicator);
+
   /// Divides the cells of @p mesh into @p n_parts of equal weights by planes across the axes, and the slave faces along
   /// with them as evenly as goes: ranks without wait for those with contact. @param slave_faces number by cell
   /// @returns the part of each cell
