@@ -173,7 +173,7 @@ before the mesh is read; a whole run that stays below that has the same peak.
 
 Calls of MPI by each rank, mean over {MESSAGE_RANKS} ranks, without friction. *Per Krylov*: difference of two runs that
 differ in the tolerance of the linear solver, and by it in Krylov iterations only; *rest per Newton*: all the others.
-Bytes are those sent. *Other collectives* are nearly all barriers: Epetra has one in each exchange between neighbours.
+Bytes are those sent. *Other collectives* are nearly all barriers: of ML, of set-up, and those in which ranks without contact sleep.
 
 {sent_text}""")
 
