@@ -281,6 +281,23 @@ namespace Nodus
       return result;
     }
 
+    /// The rank of each cell.
+    std::vector<unsigned int>
+    owners(const CoarseMesh &mesh, const std::vector<RegionParameters> &slaves, const unsigned int n_ranks)
+    {
+      std::vector<unsigned int>       slave_faces(mesh.cells.size(), 0);
+      const auto                     &quads = mesh.boundary.boundary_quads;
+      const std::vector<unsigned int> cell_of =
+          n_ranks > 1 ? cells_at_boundary(mesh) : std::vector<unsigned int>(); // needed to divide alone
+      for (unsigned int q = 0; q < cell_of.size(); ++q)
+        for (const RegionParameters &slave : slaves)
+          if (mesh.cells[cell_of[q]].material_id + 1 == slave.body &&
+              std::find(slave.boundary_ids.begin(), slave.boundary_ids.end(), quads[q].boundary_id) !=
+                  slave.boundary_ids.end())
+            ++slave_faces[cell_of[q]];
+      return divide(mesh, slave_faces, Bodies::cell_weight, Bodies::slave_face_weight, n_ranks);
+    }
+
     std::string display_name(const BodyParameters &parameters, const unsigned int index)
     {
       return parameters.name.empty() ? "body " + std::to_string(index + 1) : parameters.name;
@@ -383,17 +400,10 @@ namespace Nodus
   void
   Bodies::make_share(const CoarseMesh &mesh, const std::vector<RegionParameters> &slaves, const MPI_Comm communicator)
   {
-    std::vector<unsigned int> slave_faces(mesh.cells.size(), 0);
-    if (const auto cell_of = cells_at_boundary(mesh); !slaves.empty())
-      for (unsigned int q = 0; q < cell_of.size(); ++q)
-        for (const RegionParameters &slave : slaves)
-          if (mesh.cells[cell_of[q]].material_id + 1 == slave.body &&
-              std::find(slave.boundary_ids.begin(),
-                        slave.boundary_ids.end(),
-                        mesh.boundary.boundary_quads[q].boundary_id) != slave.boundary_ids.end())
-            ++slave_faces[cell_of[q]];
-    const auto owner = divide(
-        mesh, slave_faces, cell_weight, slave_face_weight, dealii::Utilities::MPI::n_mpi_processes(communicator));
+    const unsigned int              n_ranks = dealii::Utilities::MPI::n_mpi_processes(communicator);
+    const std::vector<unsigned int> owner   = owners(mesh, slaves, n_ranks);
+    if (std::set<unsigned int>(owner.begin(), owner.end()).size() < n_ranks)
+      return make_refinable(mesh, {}, communicator); // p4est allows ranks without a cell
     triangulation_   = std::make_unique<dealii::parallel::fullydistributed::Triangulation<dim>>(communicator);
     const auto share = share_of(mesh, owner, no_boundary, communicator);
     triangulation_->create_triangulation(share);

@@ -20,13 +20,11 @@ using namespace Cases;
 
 namespace
 {
-  constexpr unsigned int n = 6; // cells along each edge of the cube
-
-  /// A cube of which only the bottom has an id: the other faces have 0.
-  void write_cube(const std::string &file)
+  /// A cube with @p n cells along each edge, of which only the bottom has an id: the other faces have 0.
+  void write_cube(const std::string &file, const unsigned int n)
   {
     std::ofstream out(file);
-    const auto    node = [](const unsigned int i, const unsigned int j, const unsigned int k)
+    const auto    node = [n](const unsigned int i, const unsigned int j, const unsigned int k)
     { return 1 + i + (n + 1) * (j + (n + 1) * k); };
     out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << (n + 1) * (n + 1) * (n + 1) << '\n';
     for (unsigned int k = 0; k <= n; ++k)
@@ -139,7 +137,10 @@ int main(int argc, char **argv)
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
 
   if (dealii::Utilities::MPI::this_mpi_process(world()) == 0)
-    write_cube("cube.msh");
+  {
+    write_cube("cube.msh", 6);
+    write_cube("cell.msh", 1);
+  }
   MPI_Barrier(world());
   BodyParameters lower;
   lower.mesh_file      = "cube.msh";
@@ -151,4 +152,8 @@ int main(int argc, char **argv)
   BodyParameters cylinder;
   cylinder.mesh_file = SOURCE_DIR "/../meshes/cylinder_27_2.msh";
   compare("second order", {cylinder}, 3);
+
+  BodyParameters cell;
+  cell.mesh_file = "cell.msh";
+  check("more ranks than cells", Bodies({cell}, world(), false).triangulation().n_global_active_cells() == 1);
 }
