@@ -230,32 +230,32 @@ namespace Nodus
   void Condensation::make_transformation()
   {
     taken_out_.assign(nodes_.size(), 0);
-    std::vector<MatrixEntry> entries;
+    std::vector<unsigned int> owned;
     for (unsigned int i = 0; i < nodes_.size(); ++i)
-    {
-      const Row *row = rows_[i].get();
-      if (!row)
-        continue;
-      taken_out_[i] = 1;
-      replaced_.push_back(i);
-      if (i >= nodes_.n_owned())
-        continue;
+      if (rows_[i])
+      {
+        taken_out_[i] = 1;
+        replaced_.push_back(i);
+        if (i < nodes_.n_owned())
+          owned.push_back(i);
+      }
+    const Ownership          rows(static_cast<unsigned int>(dim * owned.size()), nodes_.communicator());
+    std::vector<MatrixEntry> entries;
+    for (unsigned int k = 0; k < owned.size(); ++k)
       for (unsigned int c = 0; c < dim; ++c)
       {
-        const DoFIndex dof = dim * nodes_.global(i) + c;
-        const auto     add = [&](const DoFIndex node, const Matrix3 &block)
+        const auto add = [&](const DoFIndex node, const Matrix3 &block)
         {
           for (unsigned int d = 0; d < dim; ++d)
             if (block(c, d) != 0.)
-              entries.push_back({dof, dim * node + d, block(c, d)});
+              entries.push_back({rows.begin() + dim * k + c, dim * node + d, block(c, d)});
         };
-        add(nodes_.global(i), row->own);
-        for (const Coupling &other : row->others)
+        const Row &row = *rows_[owned[k]];
+        add(nodes_.global(owned[k]), row.own);
+        for (const Coupling &other : row.others)
           add(other.node, other.block);
       }
-    }
-    const Ownership &ownership = system_.displacement_ownership();
-    T_                         = std::make_unique<CouplingMatrix>(entries, ownership, ownership);
+    T_ = std::make_shared<Transformation>(std::move(owned), entries, rows, system_.displacement_ownership());
   }
 
   void Condensation::apply_stiffness(double *const m) const
@@ -276,25 +276,16 @@ namespace Nodus
     system_.B().add_transposed_product(multiplier_.data(), f);
   }
 
-  void Condensation::take_out(double *const v) const
-  {
-    for (const unsigned int i : replaced_)
-      if (i < nodes_.n_owned())
-        std::fill_n(v + dim * i, dim, 0.);
-  }
-
   void Condensation::apply_transformation(const double *const y, double *const u) const
   {
     std::copy_n(y, u_.size(), u);
-    take_out(u);
-    T_->add_product(y, u);
+    T_->apply(u);
   }
 
   void Condensation::apply_transposed(const double *const f, double *const y) const
   {
     std::copy_n(f, f_.size(), y);
-    take_out(y);
-    T_->add_transposed_product(f, y);
+    T_->apply_transposed(y);
   }
 
   void Condensation::vmult(Vector &y, const Vector &x) const

@@ -155,49 +155,79 @@ namespace Nodus
     for (const auto &[i, diagonal] : eliminated_)
       sum(nodes_.global(i / dim), nodes_.global(i / dim))(i % dim, i % dim) += diagonal;
 
-    // (B T)^T D B T, and C_uu by what it is along the rows of B
-    std::map<DoFIndex, Matrix3> rows;
-    for (unsigned int k = 0; k < sites_.size(); ++k)
-    {
-      const Site   &site     = sites_[k];
-      Matrix3       D        = site.flexibility_inverse.asDiagonal();
-      const Matrix3 friction = system_.own_coupling(nodes_.global(site.node));
-      if (!friction.isZero(0.))
+    for (const Site &site : sites_)
+      if (const Matrix3 D = stiffness_along_rows(site); !D.isZero(0.))
       {
-        // the rows of friction span the plane in which C_uu acts
-        const Matrix3 inverse = site.rows.front().block.completeOrthogonalDecomposition().pseudoInverse();
-        Matrix3       along   = inverse.transpose() * friction * inverse;
-        for (unsigned int i = 0; i < 3; ++i)
-          if (site.flexibility_inverse[i] == 0.)
-          {
-            along.row(i).setZero();
-            along.col(i).setZero();
-          }
-        D += along;
+        const std::map<DoFIndex, Matrix3> rows = transformed_rows(site);
+        for (const auto &[i, row] : rows)
+          for (const auto &[j, column] : rows)
+            sum(i, j) += row.transpose() * D * column;
       }
-      if (D.isZero(0.))
-        continue;
-      rows.clear();
-      const auto add = [&](const DoFIndex node, const Matrix3 &block)
-      { rows.try_emplace(node, Matrix3::Zero()).first->second += block; };
-      for (const Coupling &coupling : site.rows)
-      {
-        const unsigned int local = nodes_.local(coupling.node);
-        const Row         *row   = local == dealii::numbers::invalid_unsigned_int ? nullptr : rows_[local].get();
-        if (!row)
-        {
-          add(coupling.node, coupling.block);
-          continue;
-        }
-        add(coupling.node, coupling.block * row->own);
-        for (const Coupling &other : row->others)
-          add(other.node, coupling.block * other.block);
-      }
-      for (const auto &[i, row] : rows)
-        for (const auto &[j, column] : rows)
-          sum(i, j) += row.transpose() * D * column;
-    }
     add_from_other_ranks(sum, system_.displacement_ownership(), nodes_);
     return sum.entries([&](const DoFIndex row) { return nodes_.local(row) < nodes_.n_owned(); });
+  }
+
+  Condensation::Matrix3 Condensation::stiffness_along_rows(const Site &site) const
+  {
+    const Matrix3 D        = site.flexibility_inverse.asDiagonal();
+    const Matrix3 friction = system_.own_coupling(nodes_.global(site.node));
+    if (friction.isZero(0.))
+      return D;
+    // the rows of friction span the plane in which C_uu acts
+    const Matrix3 inverse = site.rows.front().block.completeOrthogonalDecomposition().pseudoInverse();
+    Matrix3       along   = inverse.transpose() * friction * inverse;
+    for (unsigned int i = 0; i < 3; ++i)
+      if (site.flexibility_inverse[i] == 0.)
+      {
+        along.row(i).setZero();
+        along.col(i).setZero();
+      }
+    return D + along;
+  }
+
+  std::map<DoFIndex, Condensation::Matrix3> Condensation::transformed_rows(const Site &site) const
+  {
+    std::map<DoFIndex, Matrix3> rows;
+    const auto                  add = [&](const DoFIndex node, const Matrix3 &block)
+    { rows.try_emplace(node, Matrix3::Zero()).first->second += block; };
+    for (const Coupling &coupling : site.rows)
+    {
+      const unsigned int local = nodes_.local(coupling.node);
+      const Row         *row   = local == dealii::numbers::invalid_unsigned_int ? nullptr : rows_[local].get();
+      if (!row)
+      {
+        add(coupling.node, coupling.block);
+        continue;
+      }
+      add(coupling.node, coupling.block * row->own);
+      for (const Coupling &other : row->others)
+        add(other.node, coupling.block * other.block);
+    }
+    return rows;
+  }
+
+  CorrectionFactors Condensation::correction_factors() const
+  {
+    CorrectionFactors factors;
+    factors.T = T_;
+    factors.d = eliminated_;
+    factors.D.resize(sites_.size());
+    std::vector<MatrixEntry> entries;
+    for (unsigned int k = 0; k < sites_.size(); ++k)
+    {
+      const Matrix3 D = stiffness_along_rows(sites_[k]);
+      Eigen::Map<Matrix3>(factors.D[k].data()) = D;
+      if (D.isZero(0.))
+        continue;
+      const std::map<DoFIndex, Matrix3> rows = transformed_rows(sites_[k]);
+      for (unsigned int a = 0; a < 3; ++a)
+        for (const auto &[node, block] : rows)
+          for (unsigned int d = 0; d < dim; ++d)
+            if (block(a, d) != 0.)
+              entries.push_back({system_.multiplier_ownership().begin() + 3 * k + a, dim * node + d, block(a, d)});
+    }
+    factors.R = std::make_unique<const CouplingMatrix>(
+        entries, system_.multiplier_ownership(), system_.displacement_ownership());
+    return factors;
   }
 } // namespace Nodus

@@ -1,5 +1,7 @@
 #include <nodus/solve/corrected_matrix.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cstring>
 
@@ -20,13 +22,16 @@ namespace Nodus
 
   CorrectedMatrix::CorrectedMatrix(const NodeMatrix               &K,
                                    std::vector<char>               taken_out,
-                                   const std::vector<MatrixEntry> &correction)
+                                   const std::vector<MatrixEntry> &correction,
+                                   CorrectionFactors               factors)
       : taken_out_(std::move(taken_out))
       , nodes_(K.map(), columns(correction))
       , pattern_(K.pattern())
+      , factors_(std::move(factors))
       , stiffness_(K.values().begin(), K.values().end())
+      , springs_(dim * factors_.D.size())
   {
-    for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
+    for (unsigned int i = 0; i < nodes_.n_owned() && !factors_.T; ++i)
       for (std::size_t k = pattern_->start[i]; k < pattern_->start[i + 1]; ++k)
         if (taken_out_[i] || taken_out_[pattern_->column[k]])
           std::fill_n(stiffness_.begin() + 9 * k, 9, 0.F);
@@ -71,8 +76,32 @@ namespace Nodus
       start_[i + 1] += start_[i];
   }
 
-  void CorrectedMatrix::vmult(double *const y, const double *const x_owned) const
+  void CorrectedMatrix::vmult_by_factors(double *const y, double *const x) const
   {
+    factors_.T->apply(x);
+    pattern_->vmult(stiffness_.data(), y, nodes_.with_ghosts(x));
+    factors_.T->restore(x);
+    factors_.T->apply_transposed(y);
+
+    std::fill(springs_.begin(), springs_.end(), 0.);
+    factors_.R->add_product(x, springs_.data());
+    for (std::size_t k = 0; k < factors_.D.size(); ++k)
+    {
+      Eigen::Map<Eigen::Vector3d> values(&springs_[dim * k]);
+      values = (Eigen::Map<const Eigen::Matrix3d>(factors_.D[k].data()) * values).eval();
+    }
+    factors_.R->add_transposed_product(springs_.data(), y);
+    for (const auto &[i, d] : factors_.d)
+      y[i] = d * x[i];
+  }
+
+  void CorrectedMatrix::vmult(double *const y, double *const x_owned) const
+  {
+    if (factors_.T)
+    {
+      vmult_by_factors(y, x_owned);
+      return;
+    }
     const NodeValues x = nodes_.with_ghosts(x_owned);
     pattern_->vmult(stiffness_.data(), y, x);
     // rows of a block in vectors of four, as in NodePattern::vmult()

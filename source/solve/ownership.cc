@@ -9,13 +9,18 @@
 namespace Nodus
 {
   Ownership::Ownership(const dealii::IndexSet &owned, const MPI_Comm communicator)
+      : Ownership(static_cast<unsigned int>(owned.n_elements()), communicator)
+  {
+    if (!owned.is_ascending_and_one_to_one(communicator))
+      throw SolverFailure("Krylov solver: each rank must own one range of unknowns, in the order of the ranks.");
+  }
+
+  Ownership::Ownership(const unsigned int n_owned, const MPI_Comm communicator)
       : start_(1, 0)
       , communicator_(communicator)
       , rank_(dealii::Utilities::MPI::this_mpi_process(communicator))
   {
-    if (!owned.is_ascending_and_one_to_one(communicator))
-      throw SolverFailure("Krylov solver: each rank must own one range of unknowns, in the order of the ranks.");
-    for (const DoFIndex n : dealii::Utilities::MPI::all_gather(communicator, owned.n_elements()))
+    for (const unsigned int n : dealii::Utilities::MPI::all_gather(communicator, n_owned))
       start_.push_back(start_.back() + n);
   }
 

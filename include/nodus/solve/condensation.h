@@ -1,6 +1,7 @@
 #ifndef nodus_solve_condensation_h
 #define nodus_solve_condensation_h
 
+#include <nodus/solve/corrected_matrix.h>
 #include <nodus/solve/saddle_point_operator.h>
 
 #include <deal.II/lac/trilinos_vector.h>
@@ -54,6 +55,8 @@ namespace Nodus
       return taken_out_;
     }
     std::vector<MatrixEntry> correction() const;
+    /// The same in factors. Collective.
+    CorrectionFactors correction_factors() const;
 
     /// Turns modes of the owned displacements, one after the other, into the unknowns y.
     void transform_modes(std::vector<double> &modes) const;
@@ -101,8 +104,11 @@ namespace Nodus
     void solve_cluster(std::vector<Eigen::Vector3d> &values, bool transposed) const;
 
     void apply_stiffness(double *m) const;              ///< m = D m
+    /// D of a site, with C_uu by what it is along the rows of B.
+    Matrix3 stiffness_along_rows(const Site &site) const;
+    /// Rows of B T of a site by global node.
+    std::map<DoFIndex, Matrix3> transformed_rows(const Site &site) const;
     void add_springs(const double *u, double *f) const; ///< f += B^T D B u
-    void take_out(double *v) const;                     ///< zeros at the nodes that are taken out
     void apply_transformation(const double *y, double *u) const;
     void apply_transposed(const double *f, double *y) const;
 
@@ -114,7 +120,7 @@ namespace Nodus
     std::vector<char>                            taken_out_;
     std::vector<unsigned int>                    replaced_;   ///< local nodes that are taken out
     std::vector<std::pair<unsigned int, double>> eliminated_; ///< owned unknowns without meaning, and a diagonal
-    std::unique_ptr<CouplingMatrix>              T_;          ///< rows that are not those of the identity
+    std::shared_ptr<const Transformation>        T_;
     std::vector<double>                          particular_; ///< u_g
     mutable std::vector<double>                  u_, f_, multiplier_;
   };

@@ -11,6 +11,7 @@
 namespace Nodus
 {
   class Condensation;
+  class SaddlePointOperator;
 
   /// Conjugate gradients with multigrid on the displacements that are left when condensation.h has eliminated the
   /// multipliers; a system with a variation needs GMRES on all unknowns, with condensation and multigrid as

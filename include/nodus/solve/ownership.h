@@ -29,6 +29,8 @@ namespace Nodus
   {
   public:
     Ownership(const dealii::IndexSet &owned, MPI_Comm communicator);
+    /// @p n_owned indices here, numbered through from rank to rank. Collective.
+    Ownership(unsigned int n_owned, MPI_Comm communicator);
 
     unsigned int owner(DoFIndex i) const;
 
