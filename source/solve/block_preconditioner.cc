@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace Nodus
 {
@@ -58,71 +59,36 @@ namespace Nodus
 
   void BlockPreconditioner::make_augmented_matrix()
   {
-    const CouplingMatrix &B         = system_.B();
-    const unsigned int    n_columns = B.columns().size();
-
-    // For every displacement (local column of B), the slave nodes whose rows hold it.
-    std::vector<std::vector<unsigned int>> nodes_of_column(n_columns);
-    // Per node, its columns and the three coefficients of each.
-    std::vector<std::vector<unsigned int>> columns_of_node(D_inverse_.size());
-    std::vector<Eigen::Matrix3Xd>          rows_of_node(D_inverse_.size());
-    std::vector<int>                       position(n_columns, -1);
-    for (unsigned int node = 0; node < D_inverse_.size(); ++node)
+    const CouplingMatrix &B = system_.B();
+    Constraints           constraints;
+    for (unsigned int k = 0; k < D_inverse_.size(); ++k)
     {
-      std::vector<unsigned int> &node_columns = columns_of_node[node];
+      std::map<DoFIndex, Block> blocks;
       for (unsigned int a = 0; a < 3; ++a)
-        B.for_row(3 * node + a,
-                  [&](const unsigned int column, const double)
-                  {
-                    if (position[column] >= 0)
-                      return;
-                    position[column] = node_columns.size();
-                    node_columns.push_back(column);
-                    nodes_of_column[column].push_back(node);
-                  });
-      rows_of_node[node] = Eigen::Matrix3Xd::Zero(3, node_columns.size());
-      for (unsigned int a = 0; a < 3; ++a)
-        B.for_row(3 * node + a,
+        B.for_row(3 * k + a,
                   [&](const unsigned int column, const double value)
-                  { rows_of_node[node](a, position[column]) = value; });
-      for (const unsigned int c : node_columns)
-        position[c] = -1;
-    }
-
-    // B^T D^-1 B, row by row, so that the contributions of several nodes are added before they travel.
-    std::vector<MatrixEntry>  entries = system_.displacement_entries();
-    std::vector<double>       sum(n_columns, 0.);
-    std::vector<unsigned int> touched;
-    for (unsigned int row = 0; row < n_columns; ++row)
-    {
-      for (const unsigned int node : nodes_of_column[row])
+                  {
+                    const DoFIndex dof = B.columns()[column];
+                    blocks.try_emplace(dof / dim, Block::Zero()).first->second(a, dof % dim) += value;
+                  });
+      if (blocks.empty())
+        continue;
+      // friction couples displacements along the rows of B
+      Block          D        = Eigen::Map<const Block>(D_inverse_[k].data());
+      const DoFIndex node     = system_.slave_nodes()[k];
+      const Block    friction = system_.own_coupling(node);
+      if (const auto own = blocks.find(node); own != blocks.end() && !friction.isZero(0.))
       {
-        const std::vector<unsigned int> &columns = columns_of_node[node];
-        const Eigen::Matrix3Xd          &rows    = rows_of_node[node];
-        const auto                       here    = std::find(columns.begin(), columns.end(), row) - columns.begin();
-        const Eigen::Vector3d            factor  = Eigen::Map<const Block>(D_inverse_[node].data()) * rows.col(here);
-        for (unsigned int k = 0; k < columns.size(); ++k)
-        {
-          if (position[columns[k]] < 0)
-          {
-            position[columns[k]] = 0;
-            touched.push_back(columns[k]);
-          }
-          sum[columns[k]] += factor.dot(rows.col(k));
-        }
+        const Eigen::Matrix3d inverse = Eigen::Matrix3d(own->second).completeOrthogonalDecomposition().pseudoInverse();
+        D += inverse.transpose() * friction * inverse;
       }
-      for (const unsigned int c : touched)
-      {
-        entries.push_back({B.columns()[row], B.columns()[c], sum[c]});
-        sum[c]      = 0.;
-        position[c] = -1;
-      }
-      touched.clear();
+      Constraints::Spring spring;
+      Eigen::Map<Block>(spring.D.data()) = D;
+      for (const auto &[other, block] : blocks)
+        Eigen::Map<Block>(spring.row.emplace_back(other, std::array<double, 9>()).second.data()) = block;
+      constraints.springs.push_back(std::move(spring));
     }
-    entries = system_.displacement_ownership().exchange(std::move(entries));
-
-    augmented_ =
-        std::make_unique<CorrectedMatrix>(system_.bulk(), std::vector<char>(system_.bulk().map().size(), 0), entries);
+    augmented_ = std::make_unique<ConstrainedMatrix>(system_.bulk(), std::move(constraints));
   }
 
   void BlockPreconditioner::apply_multiplier_blocks(double *const m) const

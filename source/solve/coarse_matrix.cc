@@ -12,6 +12,27 @@ namespace Nodus
   {
     constexpr unsigned int n_modes = CoarseRow::n_modes, n_parts = n_modes / dim;
 
+    /// Adds blocks, as (row, column, block), that other ranks have for owned rows.
+    void add_from_others(std::vector<CoarseRow>                            &rows,
+                         const DoFIndex                                     first,
+                         const std::map<unsigned int, std::vector<double>> &outgoing,
+                         const MPI_Comm                                     communicator)
+    {
+      for (const auto &[rank, numbers] : some_to_some(communicator, outgoing))
+        for (auto p = numbers.begin(); p != numbers.end();)
+        {
+          CoarseRow        &row   = rows[static_cast<DoFIndex>(*p++) - first];
+          CoarseRow::Block &block = row[static_cast<DoFIndex>(*p++)];
+          for (unsigned int k = 0; k < n_modes * n_modes; ++k)
+            block[k] += *p++;
+        }
+    }
+
+    unsigned int owner(const std::vector<DoFIndex> &starts, const DoFIndex aggregate)
+    {
+      return std::upper_bound(starts.begin(), starts.end(), aggregate) - starts.begin() - 1;
+    }
+
     /// Hands the rows behind the owned ones to their owners.
     void gather(std::vector<CoarseRow>      &rows,
                 const DoFIndex               first,
@@ -23,25 +44,38 @@ namespace Nodus
       std::map<unsigned int, std::vector<double>> outgoing; // row, column, block
       for (unsigned int g = 0; g < ghosts.size(); ++g)
       {
-        const unsigned int   owner   = std::upper_bound(starts.begin(), starts.end(), ghosts[g]) - starts.begin() - 1;
-        std::vector<double> &numbers = outgoing[owner];
+        std::vector<double> &numbers = outgoing[owner(starts, ghosts[g])];
         rows[n_owned + g].for_each(
             [&](const DoFIndex column, const CoarseRow::Block &block)
             {
-              numbers.push_back(ghosts[g]);
-              numbers.push_back(column);
+              numbers.insert(numbers.end(), {static_cast<double>(ghosts[g]), static_cast<double>(column)});
               numbers.insert(numbers.end(), block.begin(), block.begin() + n_modes * n_modes);
             });
       }
       rows.resize(n_owned);
-      for (const auto &[rank, numbers] : some_to_some(communicator, outgoing))
-        for (auto p = numbers.begin(); p != numbers.end();)
-        {
-          CoarseRow        &row   = rows[static_cast<DoFIndex>(*p++) - first];
-          CoarseRow::Block &block = row[static_cast<DoFIndex>(*p++)];
-          for (unsigned int k = 0; k < n_modes * n_modes; ++k)
-            block[k] += *p++;
-        }
+      add_from_others(rows, first, outgoing, communicator);
+    }
+
+    /// Gives the owners of columns above the own rows what they have below theirs.
+    void mirror(std::vector<CoarseRow>      &rows,
+                const DoFIndex               first,
+                const std::vector<DoFIndex> &starts,
+                const MPI_Comm               communicator)
+    {
+      std::map<unsigned int, std::vector<double>> outgoing;
+      for (unsigned int a = 0; a < rows.size(); ++a)
+        rows[a].for_each(
+            [&](const DoFIndex column, const CoarseRow::Block &block)
+            {
+              if (column < first + rows.size())
+                return;
+              std::vector<double> &numbers = outgoing[owner(starts, column)];
+              numbers.insert(numbers.end(), {static_cast<double>(column), static_cast<double>(first + a)});
+              for (unsigned int m = 0; m < n_modes; ++m)
+                for (unsigned int k = 0; k < n_modes; ++k)
+                  numbers.push_back(block[n_modes * k + m]);
+            });
+      add_from_others(rows, first, outgoing, communicator);
     }
 
     void fill_diagonal(std::vector<CoarseRow> &rows, const DoFIndex first, const MPI_Comm communicator)
@@ -68,6 +102,7 @@ namespace Nodus
     dealii::IndexSet   owned(n_modes * starts.back());
     owned.add_range(n_modes * first, n_modes * (first + n_owned));
     gather(rows, first, starts, ghosts, communicator);
+    mirror(rows, first, starts, communicator);
     fill_diagonal(rows, first, communicator);
 
     std::vector<DoFIndex> ghost_nodes;
@@ -79,9 +114,7 @@ namespace Nodus
               for (unsigned int part = 0; part < n_parts; ++part)
                 ghost_nodes.push_back(n_parts * column + part);
           });
-    auto       map     = std::make_shared<const NodeMap>(owned, std::move(ghost_nodes), communicator);
-    const auto is_read = [&](const unsigned int a, const DoFIndex column)
-    { return column >= first + a || column < first; };
+    auto map = std::make_shared<const NodeMap>(owned, std::move(ghost_nodes), communicator);
 
     auto matrix = std::make_unique<NodeMatrix>();
     matrix->reinit(map,
@@ -90,8 +123,6 @@ namespace Nodus
                      rows[i / n_parts].for_each(
                          [&](const DoFIndex column, const CoarseRow::Block &)
                          {
-                           if (!is_read(i / n_parts, column))
-                             return;
                            const unsigned int j = map->local(n_parts * column);
                            for (unsigned int part = 0; part < n_parts; ++part)
                              if (j + part > i)
@@ -103,8 +134,6 @@ namespace Nodus
       rows[a].for_each(
           [&](const DoFIndex column, const CoarseRow::Block &block)
           {
-            if (!is_read(a, column))
-              return;
             const unsigned int j = map->local(n_parts * column);
             for (unsigned int part = 0; part < n_parts; ++part)
               for (unsigned int other = 0; other < n_parts; ++other)

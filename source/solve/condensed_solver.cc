@@ -66,8 +66,7 @@ namespace Nodus
     const auto timer = time_set_up();
     multigrid_.reset(); // refers to the matrix
     matrix_.reset();    // before the next one takes as much memory
-    matrix_ = std::make_unique<CorrectedMatrix>(
-        system.bulk, condensation.taken_out(), condensation.correction(), condensation.correction_factors());
+    matrix_                   = std::make_unique<ConstrainedMatrix>(system.bulk, condensation.constraints());
     std::vector<double> modes = rigid_body_modes(system.bulk, node_positions_);
     condensation.transform_modes(modes);
     multigrid_        = std::make_unique<Multigrid>(system.bulk, *matrix_, std::move(modes), 2);

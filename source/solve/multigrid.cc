@@ -63,10 +63,10 @@ namespace Nodus
     return modes;
   }
 
-  Multigrid::Multigrid(const NodeMatrix      &K,
-                       const CorrectedMatrix &A,
-                       std::vector<double>    modes,
-                       unsigned int           smoother_sweeps)
+  Multigrid::Multigrid(const NodeMatrix        &K,
+                       const ConstrainedMatrix &A,
+                       std::vector<double>      modes,
+                       unsigned int             smoother_sweeps)
   {
     give_back_memory(); // from here to the end of the iterations the program needs most
     std::unique_ptr<NodeMatrix> matrix = add_level(K, nullptr, &A, modes, smoother_sweeps);
@@ -74,12 +74,11 @@ namespace Nodus
     bool stalls = false;
     while (!stalls && size(*matrix) > largest_for_library)
     {
-      auto copy = std::make_unique<CorrectedMatrix>(
-          *matrix, std::vector<char>(matrix->map().size(), 0), std::vector<MatrixEntry>());
-      const CorrectedMatrix *const A_coarse = copy.get();
-      auto                         next     = add_level(*matrix, std::move(copy), A_coarse, modes, smoother_sweeps);
-      stalls                                = size(*next) > .5 * size(*matrix);
-      matrix                                = std::move(next);
+      auto                           copy     = std::make_unique<ConstrainedMatrix>(*matrix);
+      const ConstrainedMatrix *const A_coarse = copy.get();
+      auto                           next     = add_level(*matrix, std::move(copy), A_coarse, modes, smoother_sweeps);
+      stalls                                  = size(*next) > .5 * size(*matrix);
+      matrix                                  = std::move(next);
     }
 
     using AMG      = dealii::TrilinosWrappers::PreconditionAMG;
@@ -101,11 +100,11 @@ namespace Nodus
   }
 
   /// Takes the modes of the level and gives those of the next one, whose matrix it returns.
-  std::unique_ptr<NodeMatrix> Multigrid::add_level(const NodeMatrix                &K,
-                                                   std::unique_ptr<CorrectedMatrix> owned,
-                                                   const CorrectedMatrix           *A,
-                                                   std::vector<double>             &modes,
-                                                   const unsigned int               smoother_sweeps)
+  std::unique_ptr<NodeMatrix> Multigrid::add_level(const NodeMatrix                  &K,
+                                                   std::unique_ptr<ConstrainedMatrix> owned,
+                                                   const ConstrainedMatrix           *A,
+                                                   std::vector<double>               &modes,
+                                                   const unsigned int                 smoother_sweeps)
   {
     Level level;
     level.matrix                     = std::move(owned);

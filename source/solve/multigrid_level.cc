@@ -10,10 +10,10 @@
 
 namespace Nodus
 {
-  MultigridLevel::MultigridLevel(const NodeMatrix      &K,
-                                 const CorrectedMatrix &A,
-                                 std::vector<double>    modes,
-                                 const unsigned int     smoother_sweeps)
+  MultigridLevel::MultigridLevel(const NodeMatrix        &K,
+                                 const ConstrainedMatrix &A,
+                                 std::vector<double>      modes,
+                                 const unsigned int       smoother_sweeps)
       : A_(A)
       , sweeps_(smoother_sweeps)
   {
@@ -27,24 +27,16 @@ namespace Nodus
   void MultigridLevel::make_diagonal(const NodeMatrix &K)
   {
     using Matrix3 = Eigen::Matrix3d;
-    D_inverse_.resize(A_.map().n_owned());
-    for (unsigned int i = 0; i < D_inverse_.size(); ++i)
+    D_inverse_    = A_.diagonal_blocks(K);
+    for (std::array<double, 9> &block : D_inverse_)
     {
-      Matrix3 D = Matrix3::Zero();
-      A_.for_row(K,
-                 i,
-                 [&](const unsigned int j, const double *block, const bool)
-                 {
-                   if (j == i)
-                     D += Eigen::Map<const Matrix3>(block);
-                 });
       // an indefinite tangent must not make the smoother indefinite
-      const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(D);
+      const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(Eigen::Map<const Matrix3>(block.data()));
       Eigen::Vector3d                              inverse = eigen.eigenvalues().cwiseAbs();
       const double                                 largest = inverse.maxCoeff();
       for (unsigned int c = 0; c < dim; ++c)
         inverse[c] = inverse[c] > 1e-12 * largest ? 1. / inverse[c] : 0.;
-      Eigen::Map<Matrix3>(D_inverse_[i].data()) =
+      Eigen::Map<Matrix3>(block.data()) =
           eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
     }
   }

@@ -84,7 +84,7 @@ namespace Nodus
   {
     std::map<unsigned int, std::vector<DoFIndex>> questions;
     for (const DoFIndex node : nodes)
-      questions[std::upper_bound(start_.begin(), start_.end(), node) - start_.begin() - 1].push_back(node);
+      questions[owner(node)].push_back(node);
     std::map<unsigned int, std::vector<std::vector<double>>> answers;
     for (const auto &[rank, asked] : some_to_some(communicator_, questions))
       for (const DoFIndex node : asked)

@@ -5,14 +5,37 @@
 
 namespace Nodus
 {
-  Transformation::Transformation(std::vector<unsigned int>       nodes,
-                                 const std::vector<MatrixEntry> &entries,
-                                 const Ownership                &rows,
-                                 const Ownership                &displacements)
-      : nodes_(std::move(nodes))
-      , T_(entries, rows, displacements)
-      , values_(dim * nodes_.size())
-      , kept_(dim * nodes_.size())
+  namespace
+  {
+    CouplingMatrix make_matrix(const std::vector<std::pair<unsigned int, NodeRow>> &rows,
+                               const unsigned int                                   n_owned,
+                               const Ownership                                     &displacements)
+    {
+      const Ownership          range(dim * n_owned, displacements.communicator());
+      std::vector<MatrixEntry> entries;
+      for (unsigned int k = 0; k < n_owned; ++k)
+        append_entries(entries, range.begin() + dim * k, rows[k].second);
+      return CouplingMatrix(entries, range, displacements);
+    }
+  } // namespace
+
+  void append_entries(std::vector<MatrixEntry> &entries, const DoFIndex first, const NodeRow &row)
+  {
+    for (unsigned int c = 0; c < dim; ++c)
+      for (const auto &[node, block] : row)
+        for (unsigned int d = 0; d < dim; ++d)
+          if (const double value = block[dim * c + d]; value != 0.)
+            entries.push_back({first + c, dim * node + d, value});
+  }
+
+  Transformation::Transformation(std::vector<std::pair<unsigned int, NodeRow>> rows,
+                                 const unsigned int                            n_owned,
+                                 const Ownership                              &displacements)
+      : rows_(std::move(rows))
+      , n_owned_(n_owned)
+      , T_(make_matrix(rows_, n_owned_, displacements))
+      , values_(dim * n_owned_)
+      , kept_(dim * n_owned_)
   {
   }
 
@@ -20,25 +43,22 @@ namespace Nodus
   {
     std::fill(values_.begin(), values_.end(), 0.);
     T_.add_product(x, values_.data());
-    for (std::size_t k = 0; k < nodes_.size(); ++k)
+    for (unsigned int k = 0; k < n_owned_; ++k)
       for (unsigned int c = 0; c < dim; ++c)
-      {
-        kept_[dim * k + c]    = x[dim * nodes_[k] + c];
-        x[dim * nodes_[k] + c] = values_[dim * k + c];
-      }
+        kept_[dim * k + c] = std::exchange(x[dim * rows_[k].first + c], values_[dim * k + c]);
   }
 
   void Transformation::restore(double *const x) const
   {
-    for (std::size_t k = 0; k < nodes_.size(); ++k)
-      std::copy_n(&kept_[dim * k], dim, x + dim * nodes_[k]);
+    for (unsigned int k = 0; k < n_owned_; ++k)
+      std::copy_n(&kept_[dim * k], dim, x + dim * rows_[k].first);
   }
 
   void Transformation::apply_transposed(double *const f) const
   {
-    for (std::size_t k = 0; k < nodes_.size(); ++k)
+    for (unsigned int k = 0; k < n_owned_; ++k)
       for (unsigned int c = 0; c < dim; ++c)
-        values_[dim * k + c] = std::exchange(f[dim * nodes_[k] + c], 0.);
+        values_[dim * k + c] = std::exchange(f[dim * rows_[k].first + c], 0.);
     T_.add_transposed_product(values_.data(), f);
   }
 } // namespace Nodus

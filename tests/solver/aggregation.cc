@@ -1,5 +1,5 @@
-// The parts of multigrid against products with the matrix itself: sum of stiffness and correction, prolongation of the
-// modes, P^T A P, and the symmetry of the cycle. Prolongation and smoother are in single precision.
+// The parts of multigrid against products with T^T K T + R^T D R + d from global vectors: prolongation of the modes,
+// P^T A P, and the symmetry of the cycle. Prolongation and smoother are in single precision.
 
 #include <nodus/solve/multigrid.h>
 
@@ -14,26 +14,60 @@ using namespace Nodus;
 
 namespace
 {
-  /// Springs between nodes of both cubes, wherever they are owned; two nodes are taken out of the stiffness.
-  std::vector<MatrixEntry> springs(const BlockLayout &layout, const double stiffness)
+  using Block = std::array<double, 9>;
+
+  Block diagonal(const double x, const double y, const double z)
   {
-    std::vector<MatrixEntry> entries;
-    const DoFIndex           n = layout.n_u / dim;
-    if (dealii::Utilities::MPI::this_mpi_process(layout.communicator) == 0)
-    {
-      for (DoFIndex k = 0; k < 12; ++k)
-      {
-        const DoFIndex a = 5 * k + n / 3, b = n - 1 - 3 * k;
-        for (unsigned int c = 0; c < dim; ++c)
-          for (const auto &[i, j] : {std::pair(a, a), std::pair(b, b), std::pair(a, b), std::pair(b, a)})
-            entries.push_back({dim * i + c, dim * j + c, i == j ? stiffness : -stiffness});
-      }
-      for (const DoFIndex node : {n / 2, n / 2 + 7})
-        for (unsigned int c = 0; c < dim; ++c)
-          entries.push_back({dim * node + c, dim * node + c, stiffness});
-    }
-    return Ownership(layout.owned[0], layout.communicator).exchange(std::move(entries));
+    return {{x, 0., 0., 0., y, 0., 0., 0., z}};
   }
+
+  /// Nodes of one cube are replaced by such of the other, in one direction or in all, and springs connect the cubes,
+  /// wherever those nodes are owned. All of it on every rank.
+  struct GlobalConstraints
+  {
+    std::vector<std::pair<DoFIndex, NodeRow>> replaced;
+    std::vector<Constraints::Spring>          springs;
+    std::vector<std::pair<DoFIndex, double>>  diagonal;
+
+    GlobalConstraints(const DoFIndex n, const double stiffness)
+    {
+      for (DoFIndex k = 0; k < 8; ++k)
+      {
+        const DoFIndex z = 2 * k + n / 3, other = n - 1 - 3 * k;
+        replaced.emplace_back(z,
+                              NodeRow{{z, k % 2 == 0 ? Block{{0., 0.6, 0., 0., 0.8, 0., 0., 0., 1.}} : Block{}},
+                                      {other, Block{{0.5, 0.1, 0., -0.2, 0.7, 0., 0., 0., 0.4}}},
+                                      {other - 1, ::diagonal(0.5, 0.3, 0.6)}});
+        for (unsigned int c = 0; c < (k % 2 == 0 ? 1U : 3U); ++c)
+          diagonal.emplace_back(dim * z + c, stiffness);
+      }
+      for (DoFIndex k = 0; k < 12; ++k)
+        springs.push_back({{{5 * k + n / 3 + 20, ::diagonal(1., 1., 1.)},
+                            {n - 2 - 3 * k, ::diagonal(-1., -0.5, -1.)},
+                            {n / 3 + 3, Block{{0., 0.1, 0., 0., 0., 0.1, 0., 0., 0.}}}},
+                           Block{{stiffness, 0., 0.1 * stiffness, 0., 2. * stiffness, 0., 0.1 * stiffness, 0., 0.}}});
+    }
+    Constraints on_rank(const NodeMatrix &K, const Ownership &displacements) const
+    {
+      Constraints                                   result;
+      std::vector<std::pair<unsigned int, NodeRow>> rows;
+      unsigned int                                  n_owned = 0;
+      for (unsigned int i = 0; i < K.map().size(); ++i)
+        for (const auto &[node, row] : replaced)
+          if (node == K.map().global(i))
+          {
+            rows.emplace_back(i, row);
+            n_owned += i < K.map().n_owned();
+          }
+      result.T = std::make_shared<const Transformation>(std::move(rows), n_owned, displacements);
+      if (dealii::Utilities::MPI::this_mpi_process(K.map().communicator()) == 0)
+        result.springs = springs;
+      for (const auto &[dof, value] : diagonal)
+        if (dof >= displacements.begin() && dof < displacements.end())
+          result.diagonal.emplace_back(dof - displacements.begin(), value);
+      return result;
+    }
+  };
 
   class Check
   {
@@ -43,7 +77,9 @@ namespace
         , K(problem.system.bulk)
         , n(dim * K.map().n_owned())
         , scale(K.largest_diagonal())
-        , A(K, taken_out(), springs(problem.layout, scale))
+        , constraints(K.map().n_global(), scale)
+        , displacements(n, MPI_COMM_WORLD)
+        , A(K, constraints.on_rank(K, displacements))
         , modes(rigid_body_modes(K, problem.node_positions))
         , out(std::cout, dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
     {
@@ -51,10 +87,31 @@ namespace
 
     void run()
     {
-      const std::vector<double> x = rough(1.), Ax = apply(x);
-      std::vector<double>       y(n);
+      for (const auto &[dof, value] : constraints.diagonal) // as condensation does it
+        if (dof >= displacements.begin() && dof < displacements.end())
+          for (unsigned int m = 0; m < Aggregation::n_modes; ++m)
+            modes[m * n + dof - displacements.begin()] = 0.;
+      const std::vector<double> before = rough(1.), Ax = apply(before);
+      std::vector<double>       x = before, y(n);
       A.vmult(y.data(), x.data());
       report("product in single precision", distance(y, Ax), 1e-6);
+      report("the argument is what it was", distance(x, before), 0.);
+
+      const std::vector<std::array<double, 9>> blocks      = A.diagonal_blocks(K);
+      double                                   worst_block = 0.;
+      for (const DoFIndex node : tried_nodes())
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          const bool          here = dim * node >= displacements.begin() && dim * node < displacements.end();
+          const unsigned int  i    = dim * node - displacements.begin();
+          std::vector<double> unit(n, 0.);
+          if (here)
+            unit[i + c] = 1.;
+          const std::vector<double> column = apply(unit);
+          for (unsigned int d = 0; d < dim && here; ++d)
+            worst_block = std::max(worst_block, std::abs(column[i + d] - blocks[i / dim][dim * d + c]) / scale);
+        }
+      report("diagonal blocks", dealii::Utilities::MPI::max(worst_block, MPI_COMM_WORLD), 1e-12);
 
       std::vector<std::array<double, 9>> D_inverse(K.map().n_owned(), std::array<double, 9>{});
       for (unsigned int i = 0; i < K.map().n_owned(); ++i)
@@ -114,13 +171,16 @@ namespace
     {
       return condition ? "yes" : "NO";
     }
-    std::vector<char> taken_out() const
+    std::vector<DoFIndex> tried_nodes() const
     {
-      std::vector<char> flags(K.map().size(), 0);
-      const DoFIndex    middle = problem.layout.n_u / dim / 2;
-      for (unsigned int i = 0; i < flags.size(); ++i)
-        flags[i] = K.map().global(i) == middle || K.map().global(i) == middle + 7;
-      return flags;
+      std::vector<DoFIndex> nodes = {0, K.map().n_global() / 2};
+      for (const auto &[node, row] : constraints.replaced)
+        for (const auto &[other, block] : row)
+          nodes.push_back(other);
+      for (const auto &spring : constraints.springs)
+        for (const auto &[other, block] : spring.row)
+          nodes.push_back(other);
+      return nodes;
     }
     std::vector<double> rough(const double seed) const
     {
@@ -129,21 +189,61 @@ namespace
         x[i] = std::sin(seed * (dim * K.map().global(i / dim) + i % dim + 1.));
       return x;
     }
-    /// A x in double precision, block by block.
-    std::vector<double> apply(const std::vector<double> &x) const
+    static void multiply(const NodeRow &row, const std::vector<double> &x, double *const y)
     {
-      const NodeValues    all = A.map().with_ghosts(x.data());
-      std::vector<double> y(n, 0.);
-      for (unsigned int i = 0; i < K.map().n_owned(); ++i)
-        A.for_row(K,
-                  i,
-                  [&](const unsigned int j, const double *block, const bool transposed)
-                  {
-                    for (unsigned int c = 0; c < dim; ++c)
-                      for (unsigned int d = 0; d < dim; ++d)
-                        y[dim * i + c] += block[transposed ? dim * d + c : dim * c + d] * all[j][d];
-                  });
-      return y;
+      for (const auto &[node, block] : row)
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < dim; ++d)
+            y[c] += block[dim * c + d] * x[dim * node + d];
+    }
+    static void multiply_transposed(const NodeRow &row, const double *const x, std::vector<double> &y)
+    {
+      for (const auto &[node, block] : row)
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < dim; ++d)
+            y[dim * node + d] += block[dim * c + d] * x[c];
+    }
+    /// The owned values in a vector of all, or the other way round.
+    std::vector<double> everywhere(const std::vector<double> &owned) const
+    {
+      std::vector<double> all(displacements.start().back(), 0.);
+      std::copy(owned.begin(), owned.end(), all.begin() + displacements.begin());
+      dealii::Utilities::MPI::sum(all, MPI_COMM_WORLD, all);
+      return all;
+    }
+    std::vector<double> here(const std::vector<double> &all) const
+    {
+      return std::vector<double>(all.begin() + displacements.begin(), all.begin() + displacements.end());
+    }
+    /// A x in double precision.
+    std::vector<double> apply(const std::vector<double> &owned) const
+    {
+      const std::vector<double> x = everywhere(owned);
+      std::vector<double>       u = x;
+      for (const auto &[z, row] : constraints.replaced)
+      {
+        std::fill_n(&u[dim * z], dim, 0.);
+        multiply(row, x, &u[dim * z]);
+      }
+      std::vector<double> f(n);
+      K.vmult(f.data(), here(u).data());
+      std::vector<double> forces = everywhere(f), y = forces;
+      for (const auto &[z, row] : constraints.replaced)
+        std::fill_n(&y[dim * z], dim, 0.);
+      for (const auto &[z, row] : constraints.replaced)
+        multiply_transposed(row, &forces[dim * z], y);
+      for (const auto &[row, D] : constraints.springs)
+      {
+        double length[dim] = {}, force[dim] = {};
+        multiply(row, x, length);
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < dim; ++d)
+            force[c] += D[dim * c + d] * length[d];
+        multiply_transposed(row, force, y);
+      }
+      for (const auto &[dof, value] : constraints.diagonal)
+        y[dof] = value * x[dof];
+      return here(y);
     }
     double distance(const std::vector<double> &a, const std::vector<double> &b) const
     {
@@ -167,8 +267,10 @@ namespace
     const NodeMatrix          &K;
     const unsigned int         n;
     const double               scale; ///< of the stiffness
-    const CorrectedMatrix      A;
-    const std::vector<double>  modes;
+    const GlobalConstraints    constraints;
+    const Ownership            displacements;
+    const ConstrainedMatrix    A;
+    std::vector<double>        modes;
     dealii::ConditionalOStream out;
   };
 } // namespace

@@ -1,7 +1,7 @@
 #ifndef nodus_solve_aggregation_h
 #define nodus_solve_aggregation_h
 
-#include <nodus/solve/corrected_matrix.h>
+#include <nodus/solve/constrained_matrix.h>
 
 #include <Eigen/Core>
 
@@ -24,7 +24,7 @@ namespace Nodus
     /// Keeps a reference to @p A, not to @p K of which it was made. @param modes of the owned displacements, six one
     /// after the other @param D_inverse of the owned nodes, row by row. Collective.
     Aggregation(const NodeMatrix                         &K,
-                const CorrectedMatrix                    &A,
+                const ConstrainedMatrix                  &A,
                 std::vector<double>                       modes,
                 const std::vector<std::array<double, 9>> &D_inverse,
                 double                                    omega);
@@ -50,12 +50,16 @@ namespace Nodus
     void make_tentative(std::vector<double> modes);
     void smooth(const NodeMatrix &K, const std::vector<std::array<double, 9>> &D_inverse, double omega);
 
+    bool owned(const DoFIndex aggregate) const
+    {
+      return aggregate >= first_ && aggregate < first_ + n_aggregates_;
+    }
     DoFIndex global_aggregate(const unsigned int a) const
     {
       return a < n_aggregates_ ? first_ + a : ghosts_[a - n_aggregates_];
     }
 
-    const CorrectedMatrix    &A_;
+    const ConstrainedMatrix  &A_;
     const NodeMap            &nodes_;
     unsigned int              n_aggregates_ = 0; ///< owned
     std::vector<DoFIndex>     starts_;           ///< of the aggregates of each rank, and the number of all

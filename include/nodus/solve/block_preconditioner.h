@@ -1,7 +1,7 @@
 #ifndef nodus_solve_block_preconditioner_h
 #define nodus_solve_block_preconditioner_h
 
-#include <nodus/solve/corrected_matrix.h>
+#include <nodus/solve/constrained_matrix.h>
 #include <nodus/solve/multigrid.h>
 #include <nodus/solve/saddle_point_operator.h>
 
@@ -40,7 +40,7 @@ namespace Nodus
 
     const SaddlePointOperator         &system_;
     std::vector<std::array<double, 9>> D_inverse_; ///< per owned slave node, row by row
-    std::unique_ptr<CorrectedMatrix>   augmented_;
+    std::unique_ptr<ConstrainedMatrix> augmented_;
     std::unique_ptr<Multigrid>         multigrid_;
     mutable Vector                     augmented_rhs_;
     mutable std::vector<double>        multiplier_part_;

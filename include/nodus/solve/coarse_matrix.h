@@ -45,10 +45,9 @@ namespace Nodus
     std::vector<Block>                             blocks_;
   };
 
-  /// The matrix of @p rows, two nodes of three unknowns for each aggregate: first the owned aggregates, those of rank r
-  /// numbered from @p starts[r], then parts of rows of the aggregates @p ghosts of other ranks. Of blocks between two
-  /// aggregates of the rank at hand, those below the diagonal are not read. Unknowns that nothing couples get a
-  /// positive diagonal. Collective.
+  /// The matrix whose upper triangle is in @p rows, two nodes of three unknowns for each aggregate: first the owned
+  /// aggregates, those of rank r numbered from @p starts[r], then parts of rows of the aggregates @p ghosts of other
+  /// ranks. Unknowns that nothing couples get a positive diagonal. Collective.
   std::unique_ptr<NodeMatrix> make_coarse_matrix(std::vector<CoarseRow>       rows,
                                                  const std::vector<DoFIndex> &starts,
                                                  const std::vector<DoFIndex> &ghosts,

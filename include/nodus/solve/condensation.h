@@ -1,7 +1,7 @@
 #ifndef nodus_solve_condensation_h
 #define nodus_solve_condensation_h
 
-#include <nodus/solve/corrected_matrix.h>
+#include <nodus/solve/constrained_matrix.h>
 #include <nodus/solve/saddle_point_operator.h>
 
 #include <deal.II/lac/trilinos_vector.h>
@@ -48,15 +48,8 @@ namespace Nodus
     /// Displacements and multipliers @p x that belong to the solution @p y.
     void expand(const Vector &y, const BlockVector &b, BlockVector &x) const;
 
-    /// T^T A T in the form that multigrid takes: the local nodes of K that T replaces, and what comes in
-    /// their place. Friction enters by its part along the rows of B. Collective.
-    const std::vector<char> &taken_out() const
-    {
-      return taken_out_;
-    }
-    std::vector<MatrixEntry> correction() const;
-    /// The same in factors. Collective.
-    CorrectionFactors correction_factors() const;
+    /// T^T A T in the form that multigrid takes; friction enters by its part along the rows of B.
+    Constraints constraints() const;
 
     /// Turns modes of the owned displacements, one after the other, into the unknowns y.
     void transform_modes(std::vector<double> &modes) const;
@@ -103,22 +96,21 @@ namespace Nodus
     /// Solves for the constraint displacements (transposed: forces) of the cluster, in place per site and direction.
     void solve_cluster(std::vector<Eigen::Vector3d> &values, bool transposed) const;
 
-    void apply_stiffness(double *m) const;              ///< m = D m
+    void apply_stiffness(double *m) const; ///< m = D m
     /// D of a site, with C_uu by what it is along the rows of B.
     Matrix3 stiffness_along_rows(const Site &site) const;
-    /// Rows of B T of a site by global node.
-    std::map<DoFIndex, Matrix3> transformed_rows(const Site &site) const;
-    void add_springs(const double *u, double *f) const; ///< f += B^T D B u
-    void apply_transformation(const double *y, double *u) const;
-    void apply_transposed(const double *f, double *y) const;
+    /// Rows of B T of a site.
+    NodeRow transformed_rows(const Site &site) const;
+    void    add_springs(const double *u, double *f) const; ///< f += B^T D B u
+    void    apply_transformation(const double *y, double *u) const;
+    void    apply_transposed(const double *f, double *y) const;
 
     const SaddlePointOperator                   &system_;
     const NodeMap                               &nodes_;
     std::vector<Site>                            sites_; ///< of the owned slave nodes
     std::vector<std::unique_ptr<Row>>            rows_;  ///< by local node; null where T is the identity
     std::unique_ptr<ConstraintCluster>           cluster_;
-    std::vector<char>                            taken_out_;
-    std::vector<unsigned int>                    replaced_;   ///< local nodes that are taken out
+    std::vector<unsigned int>                    replaced_;   ///< local nodes whose rows are not null
     std::vector<std::pair<unsigned int, double>> eliminated_; ///< owned unknowns without meaning, and a diagonal
     std::shared_ptr<const Transformation>        T_;
     std::vector<double>                          particular_; ///< u_g

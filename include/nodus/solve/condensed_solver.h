@@ -1,7 +1,7 @@
 #ifndef nodus_solve_condensed_solver_h
 #define nodus_solve_condensed_solver_h
 
-#include <nodus/solve/corrected_matrix.h>
+#include <nodus/solve/constrained_matrix.h>
 #include <nodus/solve/linear_solver.h>
 #include <nodus/solve/multigrid.h>
 
@@ -45,12 +45,12 @@ namespace Nodus
                        double                     tolerance,
                        BlockVector               &x) const;
 
-    const LinearSolverParameters     parameters_;
-    const std::vector<Point>         node_positions_;
-    std::unique_ptr<CorrectedMatrix> matrix_;
-    std::unique_ptr<Multigrid>       multigrid_;
-    std::vector<char>                signature_; ///< of the system that the hierarchy was made for
-    double                           first_iterations_ = 0., last_iterations_ = 0.; ///< with this hierarchy, per digit
+    const LinearSolverParameters       parameters_;
+    const std::vector<Point>           node_positions_;
+    std::unique_ptr<ConstrainedMatrix> matrix_;
+    std::unique_ptr<Multigrid>         multigrid_;
+    std::vector<char>                  signature_;        ///< of the system that the hierarchy was made for
+    double first_iterations_ = 0., last_iterations_ = 0.; ///< with this hierarchy, per digit
   };
 } // namespace Nodus
 

@@ -22,6 +22,13 @@ namespace Nodus::ModePanel
     Lanes row[dim];
   };
 
+  inline void clear_unused_lanes(Panel &panel)
+  {
+    for (Lanes &row : panel.row)
+      for (unsigned int lane = n_modes; lane < 8; ++lane)
+        row[lane] = 0.;
+  }
+
   inline Panel load(const float *block)
   {
     Panel panel;
@@ -42,15 +49,25 @@ namespace Nodus::ModePanel
         c.row[i] += (transposed ? a[dim * k + i] : a[dim * i + k]) * p.row[k];
   }
 
-  /// sum += block^T p, where the unused lanes of p are zero.
-  inline void add_transposed_product(const float *block, const Panel &p, CoarseRow::Block &sum)
+  inline double at(const float *const block, const unsigned int c, const unsigned int m)
+  {
+    return block[n_modes * c + m];
+  }
+  inline double at(const Panel *const panel, const unsigned int c, const unsigned int m)
+  {
+    return panel->row[c][m];
+  }
+
+  /// sum += block^T p, where the unused lanes of p are zero; the block is a Panel or stored.
+  template <typename Block>
+  void add_transposed_product(const Block *const block, const Panel &p, CoarseRow::Block &sum)
   {
     Lanes row[n_modes];
     for (unsigned int m = 0; m < n_modes; ++m)
       std::memcpy(&row[m], sum.data() + n_modes * m, sizeof(Lanes));
     for (unsigned int c = 0; c < dim; ++c)
       for (unsigned int m = 0; m < n_modes; ++m)
-        row[m] += static_cast<double>(block[n_modes * c + m]) * p.row[c];
+        row[m] += at(block, c, m) * p.row[c];
     for (unsigned int m = 0; m < n_modes; ++m) // in this order: each store repairs what the one before spilt over
       std::memcpy(sum.data() + n_modes * m, &row[m], sizeof(Lanes));
   }
@@ -130,9 +147,7 @@ namespace Nodus::ModePanel
     /// Of the k-th column, with unused lanes of zero.
     const Panel &panel(const unsigned int k)
     {
-      for (Lanes &row : panels_[k].row)
-        for (unsigned int lane = n_modes; lane < 8; ++lane)
-          row[lane] = 0.;
+      clear_unused_lanes(panels_[k]);
       return panels_[k];
     }
     void clear()

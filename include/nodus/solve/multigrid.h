@@ -22,7 +22,7 @@ namespace Nodus
   public:
     /// Keeps a reference to @p A, not to the stiffness @p K of which it was made. @p modes as of rigid_body_modes().
     /// Collective.
-    Multigrid(const NodeMatrix &K, const CorrectedMatrix &A, std::vector<double> modes, unsigned int smoother_sweeps);
+    Multigrid(const NodeMatrix &K, const ConstrainedMatrix &A, std::vector<double> modes, unsigned int smoother_sweeps);
 
     /// Symmetric. Collective.
     void vmult(Vector &dst, const Vector &src) const;
@@ -30,16 +30,16 @@ namespace Nodus
   private:
     struct Level
     {
-      std::unique_ptr<CorrectedMatrix> matrix; ///< of the coarse levels
-      std::unique_ptr<MultigridLevel>  level;
-      mutable std::vector<double>      coarse_residual, coarse_correction; ///< of the next level
+      std::unique_ptr<ConstrainedMatrix> matrix; ///< of the coarse levels
+      std::unique_ptr<MultigridLevel>    level;
+      mutable std::vector<double>        coarse_residual, coarse_correction; ///< of the next level
     };
 
-    std::unique_ptr<NodeMatrix> add_level(const NodeMatrix                &K,
-                                          std::unique_ptr<CorrectedMatrix> owned,
-                                          const CorrectedMatrix           *A,
-                                          std::vector<double>             &modes,
-                                          unsigned int                     smoother_sweeps);
+    std::unique_ptr<NodeMatrix> add_level(const NodeMatrix                  &K,
+                                          std::unique_ptr<ConstrainedMatrix> owned,
+                                          const ConstrainedMatrix           *A,
+                                          std::vector<double>               &modes,
+                                          unsigned int                       smoother_sweeps);
 
     std::vector<Level>                        levels_;
     std::unique_ptr<Epetra_CrsMatrix>         coarse_matrix_; ///< of ML

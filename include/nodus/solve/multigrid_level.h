@@ -15,10 +15,10 @@ namespace Nodus
   public:
     /// Keeps a reference to @p A, not to @p K of which it was made. @p modes of the owned unknowns, six one after the
     /// other. Collective.
-    MultigridLevel(const NodeMatrix      &K,
-                   const CorrectedMatrix &A,
-                   std::vector<double>    modes,
-                   unsigned int           smoother_sweeps);
+    MultigridLevel(const NodeMatrix        &K,
+                   const ConstrainedMatrix &A,
+                   std::vector<double>      modes,
+                   unsigned int             smoother_sweeps);
 
     Aggregation &transfer()
     {
@@ -37,7 +37,7 @@ namespace Nodus
     /// @p last.
     void smooth(double *x, double *r, bool last) const;
 
-    const CorrectedMatrix             &A_;
+    const ConstrainedMatrix           &A_;
     const unsigned int                 sweeps_;
     std::vector<std::array<double, 9>> D_inverse_;
     double                             largest_eigenvalue_; ///< of D^-1 A

@@ -7,6 +7,7 @@
 
 #include <Epetra_Map.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -57,8 +58,17 @@ namespace Nodus
     {
       return start_.back();
     }
+    unsigned int owner(const DoFIndex node) const
+    {
+      return std::upper_bound(start_.begin(), start_.end(), node) - start_.begin() - 1;
+    }
     /// Fetches the values at ghosts, to stay until the next call. Collective.
     NodeValues with_ghosts(const double *owned) const;
+    /// Adds the values at ghosts, @p n_components each, to those of their owners. Collective.
+    void add_from_ghosts(const double *ghosts, double *owned, const unsigned int n_components) const
+    {
+      exchange_.add(ghosts, owned, n_components);
+    }
     /// Numbers for each ghost, in the order of the local numbers: @p append adds those of an owned node to the end.
     /// Collective.
     std::vector<std::vector<double>>
@@ -153,6 +163,10 @@ namespace Nodus
     const NodeMap &map() const
     {
       return *map_;
+    }
+    const std::shared_ptr<const NodeMap> &shared_map() const
+    {
+      return map_;
     }
     void set_zero();
 
