@@ -6,7 +6,8 @@
 namespace Nodus
 {
   /// A barrier in which ranks that come early sleep. MPI's own keep their cores busy: to be used where few ranks have
-  /// the work, those at the contact, before the exchange of what they have found. Late by 0.1 ms at most. Collective.
+  /// the work, those at the contact, before the exchange of what they have found. Late by 0.1 ms or a sixteenth of the
+  /// wait. Collective.
   void wait_for_all(MPI_Comm communicator);
 } // namespace Nodus
 

@@ -9,10 +9,11 @@ namespace Nodus
 {
   void GeometryTangent::Blocks::clear()
   {
+    for (unsigned int row = 0; row < nodes.size(); ++row) // the others are zero
+      std::fill_n(force.begin() + row * stride, nodes.size(), Matrix3());
     nodes.clear();
     slaves.clear();
     offsets.clear();
-    force.assign(force.size(), Matrix3());
     gap.clear();
   }
 

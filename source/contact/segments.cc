@@ -127,33 +127,78 @@ namespace Nodus
       return orientation / area.norm() * area;
     }
 
-    /// Local coordinates of the point of face @p f that the plane sees at @p p; of the face as it is, or of the facet.
-    bool invert(const SurfaceGeometry &surface,
-                const unsigned int     f,
-                const bool             facet,
-                const Plane           &plane,
-                const Point2          &p,
-                double                &xi,
-                double                &eta)
+    /// A face as the plane sees it.
+    class FlatFace
     {
-      for (unsigned int iteration = 0; iteration < 20; ++iteration)
+    public:
+      /// @param node called as node(n) for the (degree + 1)^2 positions of the face
+      template <typename Node>
+      FlatFace(const unsigned int degree, const Plane &plane, const Node &node)
+          : degree_(degree)
       {
-        const FaceGeometry geometry =
-            facet ? FaceGeometry(surface.face(f), FaceShape(surface.degree(), xi, eta), surface.positions())
-                  : surface.at(f, xi, eta);
-        const auto   r = p - plane(geometry.x);
-        const double a = geometry.d_xi * plane.axis[0], b = geometry.d_eta * plane.axis[0],
-                     c = geometry.d_xi * plane.axis[1], d = geometry.d_eta * plane.axis[1];
-        const double det     = a * d - b * c;
-        const double step_xi = (d * r[0] - b * r[1]) / det, step_eta = (a * r[1] - c * r[0]) / det;
-        xi += step_xi;
-        eta += step_eta;
-        if (!(std::abs(xi) + std::abs(eta) < 10.))
-          return false;
-        if (std::abs(step_xi) + std::abs(step_eta) < 1e-13)
-          return true;
+        for (unsigned int n = 0; n < (degree + 1) * (degree + 1); ++n)
+          nodes_[n] = plane(node(n));
       }
-      return false;
+
+      /// Finds the local coordinates of @p p by Newton's method from what is given; false where there are none.
+      bool invert(const Point2 &p, double &xi, double &eta) const
+      {
+        for (unsigned int iteration = 0; iteration < 20; ++iteration)
+        {
+          const Tangents t        = tangents(xi, eta);
+          const auto     r        = p - t.x;
+          const double   det      = cross(t.d_xi, t.d_eta);
+          const double   step_xi  = cross(r, t.d_eta) / det, step_eta = cross(t.d_xi, r) / det;
+          xi += step_xi;
+          eta += step_eta;
+          if (!(std::abs(xi) + std::abs(eta) < 10.))
+            return false;
+          if (std::abs(step_xi) + std::abs(step_eta) < 1e-8) // its square is what is left
+            return true;
+        }
+        return false;
+      }
+      /// Area in the plane over that in local coordinates.
+      double area(const double xi, const double eta) const
+      {
+        const Tangents t = tangents(xi, eta);
+        return std::abs(cross(t.d_xi, t.d_eta));
+      }
+
+    private:
+      struct Tangents
+      {
+        Point2               x;
+        dealii::Tensor<1, 2> d_xi, d_eta;
+      };
+      Tangents tangents(const double xi, const double eta) const
+      {
+        const FaceShape shape(degree_, xi, eta);
+        Tangents        result;
+        for (unsigned int n = 0; n < shape.n; ++n)
+        {
+          result.x += shape.value[n] * nodes_[n];
+          result.d_xi += shape.d_xi[n] * nodes_[n];
+          result.d_eta += shape.d_eta[n] * nodes_[n];
+        }
+        return result;
+      }
+
+      const unsigned int    degree_;
+      std::array<Point2, 9> nodes_;
+    };
+
+    /// Of the face with its smoothing.
+    FlatFace smooth_face(const SurfaceGeometry &surface, const unsigned int f, const Plane &plane)
+    {
+      const Point *const points = surface.shape_points(f);
+      return FlatFace(surface.shape_degree(), plane, [&](const unsigned int n) { return points[n]; });
+    }
+    FlatFace facet(const SurfaceGeometry &surface, const unsigned int f, const Plane &plane)
+    {
+      return FlatFace(surface.degree(),
+                      plane,
+                      [&](const unsigned int n) { return surface.positions()[surface.face(f).nodes[n]]; });
     }
   } // namespace
 
@@ -184,8 +229,9 @@ namespace Nodus
       plane.axis[0] /= plane.axis[0].norm();
       plane.axis[1] = dealii::cross_product_3d(plane.normal, plane.axis[0]);
 
-      const Shadow window(corner, plane);
-      const double cell_area = window.polygon.area();
+      const FlatFace slave_facet = facet(slave, f, plane);
+      const Shadow   window(corner, plane);
+      const double   cell_area = window.polygon.area();
       face_area += cell_area;
 
       // the cell swept along its normal
@@ -210,6 +256,7 @@ namespace Nodus
           if (polygon.n < 3 || polygon.area() < smallest_overlap * cell_area)
             continue;
 
+          const FlatFace master_face = smooth_face(master, m, plane);
           double xi = (cell % degree + 0.5) / degree, eta = (cell / degree + 0.5) / degree;
           double master_xi = (master_cell % degree + 0.5) / degree, master_eta = (master_cell / degree + 0.5) / degree;
           for (unsigned int t = 2; t < polygon.n; ++t)
@@ -219,26 +266,24 @@ namespace Nodus
             for (unsigned int q = 0; q < rule.size(); ++q)
             {
               const Point2 p = polygon.corner[0] + rule.point(q)[0] * a + rule.point(q)[1] * b;
-              if (!invert(slave, f, true, plane, p, xi, eta))
+              if (!slave_facet.invert(p, xi, eta))
               {
                 points.clear();
                 return 0.; // the face is folded over: no partner
               }
               // the partner lies on the smoothed faces, straight across
               const Point x = slave.at(f, xi, eta).x;
-              if (!invert(master, m, false, plane, plane(x), master_xi, master_eta))
+              if (!master_face.invert(plane(x), master_xi, master_eta))
               {
                 master_xi  = (master_cell % degree + 0.5) / degree;
                 master_eta = (master_cell / degree + 0.5) / degree;
                 continue;
               }
-              const FaceGeometry geometry(slave.face(f), FaceShape(degree, xi, eta), slave.positions());
-              const Vector3      gap = master.at(m, master_xi, master_eta).x - x;
+              const Vector3 gap = master.at(m, master_xi, master_eta).x - x;
               if (gap.norm() > reach)
                 continue;
-              const double plane_area = std::abs(geometry.area_vector() * plane.normal);
-              const double area       = twice_area * rule.weight(q);
-              points.push_back({xi, eta, area / plane_area, {m, master_xi, master_eta}});
+              const double area = twice_area * rule.weight(q);
+              points.push_back({xi, eta, area / slave_facet.area(xi, eta), {m, master_xi, master_eta}});
               covered += area;
             }
           }

@@ -84,6 +84,10 @@ namespace Nodus
   void SurfaceGeometry::smooth()
   {
     points_.resize(9 * faces_.size());
+    offsets_.resize(points_.size());
+    std::vector<FaceShape> facet; // at the nine points
+    for (unsigned int n = 0; n < 9; ++n)
+      facet.emplace_back(degree_, 0.5 * (n % 3), 0.5 * (n / 3));
     for (unsigned int f = 0; f < faces_.size(); ++f)
     {
       Point      *x     = points_.data() + 9 * f;
@@ -95,6 +99,8 @@ namespace Nodus
       // eight-node face
       x[4] = Point(0.5 * (Vector3(x[1]) + Vector3(x[3]) + Vector3(x[5]) + Vector3(x[7])) -
                    0.25 * (Vector3(x[0]) + Vector3(x[2]) + Vector3(x[6]) + Vector3(x[8])));
+      for (unsigned int n = 0; n < 9; ++n)
+        offsets_[9 * f + n] = x[n] - FaceGeometry(faces_[f], facet[n], positions_).x;
     }
   }
 
@@ -164,6 +170,11 @@ namespace Nodus
   {
     if (shape_degree_ == degree_)
       return Vector3();
-    return at(f, xi, eta).x - FaceGeometry(faces_[f], FaceShape(degree_, xi, eta), positions_).x;
+    const FaceShape      shape(shape_degree_, xi, eta);
+    const Vector3 *const offsets = offsets_.data() + f * shape.n;
+    Vector3              result;
+    for (unsigned int n = 0; n < shape.n; ++n)
+      result += shape.value[n] * offsets[n];
+    return result;
   }
 } // namespace Nodus

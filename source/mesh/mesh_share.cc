@@ -99,7 +99,7 @@ namespace Nodus
       return cut;
     }
 
-    /// Recursive coordinate bisection of all bodies at once, so that surfaces in contact fall to the same parts.
+    /// Recursive coordinate bisection of all bodies at once, where the cut is smallest and contact is shared.
     class Bisection
     {
     public:
@@ -107,9 +107,11 @@ namespace Nodus
                 const std::vector<unsigned int> &slave_faces,
                 const unsigned int               cell_weight,
                 const unsigned int               face_weight)
-          : slave_faces_(slave_faces)
+          : mesh_(mesh)
+          , slave_faces_(slave_faces)
           , cell_weight_(cell_weight)
           , face_weight_(face_weight)
+          , is_lower_(mesh.vertices.size(), 0)
       {
         centres_.reserve(mesh.cells.size());
         for (const Cell &cell : mesh.cells)
@@ -160,8 +162,11 @@ namespace Nodus
         Cells  lower, upper;
         double cost;
       };
-      /// What it costs to leave all slave faces to one part, when a cut across the longest side costs one.
-      static constexpr double one_sided_contact = 4.;
+      /// What a node at a cut costs, in nodes: it belongs to the ghosts of levels, rows and products on both sides.
+      static constexpr double node_at_cut = 5.;
+      /// What a slave face costs, in cells, where the ranks without contact wait for those with it: they sleep, which
+      /// costs time but no power, and so the half of what evaluating it takes.
+      static constexpr double waiting_for_face = 5.;
       /// Of the weight of a part, by which a cut may miss it for the sake of a plane between layers of cells.
       static constexpr double tolerance = 0.01;
 
@@ -201,32 +206,38 @@ namespace Nodus
         Cut result{};
         for (std::size_t k = 0; k < order.size(); ++k)
           (k < n_lower ? result.lower : result.upper).push_back(order[k].second);
+        if (result.lower.empty() || result.upper.empty())
+        {
+          result.cost = std::numeric_limits<double>::max();
+          return result;
+        }
         double n_faces_lower = 0.;
         for (const unsigned int c : result.lower)
+        {
           n_faces_lower += slave_faces_[c];
-
-        if (cells.empty())
-          return result;
-        Point low = centres_[cells[0]], high = low;
-        for (const unsigned int c : cells)
-          for (unsigned int d = 0; d < dim; ++d)
-          {
-            low[d]  = std::min(low[d], centres_[c][d]);
-            high[d] = std::max(high[d], centres_[c][d]);
-          }
-        double longest = 0.;
-        for (unsigned int d = 0; d < dim; ++d)
-          longest = std::max(longest, high[d] - low[d]);
-        const double side = high[direction] - low[direction];
-        result.cost       = side > 0. ? longest / side : std::numeric_limits<double>::max();
-        if (n_faces > 0.)
-          result.cost += 2. * one_sided_contact * std::abs(n_faces_lower / n_faces - share);
+          for (const unsigned int v : mesh_.cells[c].vertices)
+            is_lower_[v] = 1;
+        }
+        unsigned int n_cut = 0;
+        for (const unsigned int c : result.upper)
+          for (const unsigned int v : mesh_.cells[c].vertices)
+            if (is_lower_[v])
+            {
+              is_lower_[v] = 0; // counted
+              ++n_cut;
+            }
+        for (const unsigned int c : result.lower)
+          for (const unsigned int v : mesh_.cells[c].vertices)
+            is_lower_[v] = 0;
+        result.cost = node_at_cut * n_cut + waiting_for_face * std::abs(n_faces_lower - share * n_faces) / (1. - share);
         return result;
       }
 
+      const CoarseMesh                &mesh_;
       const std::vector<unsigned int> &slave_faces_;
       const unsigned int               cell_weight_, face_weight_;
       std::vector<Point>               centres_;
+      mutable std::vector<char>        is_lower_; ///< by vertex; zeros
     };
   } // namespace
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <deque>
 #include <map>
 #include <utility>
 
@@ -17,22 +18,34 @@ namespace Nodus
 
   namespace
   {
-    constexpr DoFIndex no_aggregate = dealii::numbers::invalid_dof_index;
+    using Row = std::vector<std::pair<unsigned int, Panel>>; ///< by column
 
-    using PanelRow = std::map<DoFIndex, Panel>; // by global aggregate
+    /// The sum, which is empty then.
+    Row take(SparseRow &sum)
+    {
+      Row row;
+      row.reserve(sum.columns().size());
+      for (unsigned int k = 0; k < sum.columns().size(); ++k)
+        row.emplace_back(sum.columns()[k], sum.panel(k));
+      sum.clear();
+      return row;
+    }
 
     /// P_0 at all local nodes.
     struct Tentative
     {
-      std::vector<DoFIndex> aggregates; ///< global, or no_aggregate
-      std::vector<Panel>    panels;
+      std::vector<DoFIndex>       aggregates; ///< global number of each column
+      std::vector<unsigned int>   column;     ///< of each node, or none
+      std::vector<Panel>          panels;     ///< of each node
+      std::map<unsigned int, Row> replaced;   ///< rows of T P_0 at nodes that T replaces
     };
 
-    Tentative at_local_nodes(const NodeMap                   &nodes,
+    Tentative at_local_nodes(const ConstrainedMatrix         &A,
                              const std::vector<double>       &tentative,
                              const std::vector<unsigned int> &aggregate,
                              const DoFIndex                   first)
     {
+      const NodeMap     &nodes   = A.map();
       const unsigned int n_owned = nodes.n_owned(), n = nodes.size();
       Tentative          result;
       result.panels.resize(n, Panel{});
@@ -49,63 +62,83 @@ namespace Nodus
           numbers[dim * i] = first + aggregate[i];
       const NodeValues number = nodes.with_ghosts(numbers.data());
       for (unsigned int i = 0; i < n; ++i)
-        result.aggregates.push_back(*number[i] >= 0. ? static_cast<DoFIndex>(*number[i]) : no_aggregate);
+        if (*number[i] >= 0.)
+          result.aggregates.push_back(static_cast<DoFIndex>(*number[i]));
+      make_unique_ascending(result.aggregates);
+      for (unsigned int i = 0; i < n; ++i)
+        result.column.push_back(
+            *number[i] < 0. ? none
+                            : std::lower_bound(result.aggregates.begin(), result.aggregates.end(), *number[i]) -
+                                  result.aggregates.begin());
+      SparseRow sum;
+      sum.reinit(result.aggregates.size());
+      for (const auto &[z, T_z] : A.replacements())
+      {
+        for (const auto &[i, block] : T_z)
+          if (result.column[i] != none)
+            add_product(block.data(), false, result.panels[i], sum[result.column[i]]);
+        result.replaced[z] = take(sum);
+      }
       return result;
     }
+
+    /// sum += block (T P_0)_j
+    void add_row(const ConstrainedMatrix &A,
+                 const Tentative         &P_0,
+                 const unsigned int       j,
+                 const double *const      block,
+                 const bool               transposed,
+                 SparseRow               &sum)
+    {
+      if (A.replacement(j))
+        for (const auto &[a, panel] : P_0.replaced.at(j))
+          add_product(block, transposed, panel, sum[a]);
+      else if (P_0.column[j] != none)
+        add_product(block, transposed, P_0.panels[j], sum[P_0.column[j]]);
+    }
+
+    using PanelRow = std::map<DoFIndex, Panel>; // by global aggregate
 
     /// What T and R add to A P_0: rows of owned nodes. Collective.
     std::map<unsigned int, PanelRow>
     constrained_rows(const ConstrainedMatrix &A, const NodeMatrix &K, const Tentative &P_0)
     {
-      const NodeMap &nodes        = A.map();
-      const auto     for_row_of_T = [&](const unsigned int node, const auto &f)
+      const NodeMap &nodes = A.map();
+      SparseRow      sum;
+      sum.reinit(P_0.aggregates.size());
+      std::deque<Row>                                                             products;
+      std::map<unsigned int, std::vector<std::pair<const Row *, const double *>>> uses; // of products in row i
+      const auto add = [&](const ConstrainedMatrix::LocalRow &row)
       {
-        for (const auto &[i, block] : *A.replacement(node))
-          if (P_0.aggregates[i] != no_aggregate)
-            f(P_0.aggregates[i], block.data(), P_0.panels[i]);
-      };
-      std::map<unsigned int, PanelRow> rows;
-      const auto add_transposed = [&](const ConstrainedMatrix::LocalRow &row, const PanelRow &panels)
-      {
+        products.push_back(take(sum));
         for (const auto &[i, block] : row)
-          for (const auto &[a, panel] : panels)
-            add_product(block.data(), true, panel, rows[i].try_emplace(a, Panel{}).first->second);
+          uses[i].emplace_back(&products.back(), block.data());
       };
       for (const auto &[z, T_z] : A.replacements())
-      {
-        if (z >= nodes.n_owned())
-          continue;
-        PanelRow sum; // of K T P_0
-        K.for_row(z,
-                  [&](const unsigned int j, const double *block, const bool transposed)
-                  {
-                    const auto add = [&](const DoFIndex a, const Panel &panel)
-                    { add_product(block, transposed, panel, sum.try_emplace(a, Panel{}).first->second); };
-                    if (A.replacement(j))
-                      for_row_of_T(j,
-                                   [&](const DoFIndex a, const double *const T_block, const Panel &panel)
-                                   {
-                                     Panel p{};
-                                     add_product(T_block, false, panel, p);
-                                     add(a, p);
-                                   });
-                    else if (P_0.aggregates[j] != no_aggregate)
-                      add(P_0.aggregates[j], P_0.panels[j]);
-                  });
-        add_transposed(T_z, sum);
-      }
+        if (z < nodes.n_owned())
+        {
+          K.for_row(z,
+                    [&](const unsigned int j, const double *block, const bool transposed)
+                    { add_row(A, P_0, j, block, transposed, sum); });
+          add(T_z); // T^T K T P_0
+        }
       for (const auto &spring : A.springs())
       {
-        PanelRow sum; // of R P_0
         for (const auto &[i, block] : spring.row)
-          if (P_0.aggregates[i] != no_aggregate)
-            add_product(block.data(), false, P_0.panels[i], sum.try_emplace(P_0.aggregates[i], Panel{}).first->second);
-        for (auto &[a, panel] : sum)
-        {
-          const Panel before = std::exchange(panel, Panel{});
-          add_product(spring.D.data(), false, before, panel);
-        }
-        add_transposed(spring.row, sum);
+          if (P_0.column[i] != none)
+            add_product(block.data(), false, P_0.panels[i], sum[P_0.column[i]]);
+        for (const auto &[a, panel] : take(sum))
+          add_product(spring.D.data(), false, panel, sum[a]);
+        add(spring.row); // R^T D R P_0
+      }
+      std::map<unsigned int, PanelRow> rows;
+      for (const auto &[i, list] : uses)
+      {
+        for (const auto &[product, block] : list)
+          for (const auto &[a, panel] : *product)
+            add_product(block, true, panel, sum[a]);
+        for (const auto &[a, panel] : take(sum))
+          rows[i].emplace(P_0.aggregates[a], panel);
       }
 
       // to the owners of the rows: node, aggregate, panel
@@ -135,32 +168,32 @@ namespace Nodus
 
   void Aggregation::smooth(const NodeMatrix &K, const std::vector<std::array<double, 9>> &D_inverse, const double omega)
   {
-    const unsigned int n_owned = nodes_.n_owned(), n = nodes_.size();
-    const Tentative    P_0                             = at_local_nodes(nodes_, tentative_, aggregate_, first_);
-    tentative_                                         = std::vector<double>();
+    const unsigned int n_owned = nodes_.n_owned();
+    Tentative                              P_0         = at_local_nodes(A_, tentative_, aggregate_, first_);
     const std::map<unsigned int, PanelRow> constrained = constrained_rows(A_, K, P_0);
+    tentative_                                         = std::vector<double>();
 
-    const auto add_ghost = [&](const DoFIndex a)
-    {
-      if (a != no_aggregate && !owned(a))
+    for (const DoFIndex a : P_0.aggregates)
+      if (!owned(a))
         ghosts_.push_back(a);
-    };
-    for (unsigned int i = n_owned; i < n; ++i)
-      add_ghost(P_0.aggregates[i]);
     for (const auto &[i, row] : constrained)
       for (const auto &[a, panel] : row)
-        add_ghost(a);
-    std::sort(ghosts_.begin(), ghosts_.end());
-    ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end()), ghosts_.end());
+        if (!owned(a))
+          ghosts_.push_back(a);
+    make_unique_ascending(ghosts_);
     const auto local = [&](const DoFIndex a) -> unsigned int
     {
       return owned(a) ? a - first_
                       : n_aggregates_ + (std::lower_bound(ghosts_.begin(), ghosts_.end(), a) - ghosts_.begin());
     };
-    aggregate_.resize(n, none);
-    for (unsigned int i = n_owned; i < n; ++i)
-      if (P_0.aggregates[i] != no_aggregate)
-        aggregate_[i] = local(P_0.aggregates[i]);
+    std::vector<unsigned int> local_column;
+    for (const DoFIndex a : P_0.aggregates)
+      local_column.push_back(local(a));
+    for (unsigned int &column : P_0.column)
+      column = column == none ? none : local_column[column];
+    for (auto &[z, T_row] : P_0.replaced)
+      for (auto &[column, panel] : T_row)
+        column = local_column[column];
 
     SparseRow row;
     row.reinit(n_aggregates_ + ghosts_.size());
@@ -169,31 +202,19 @@ namespace Nodus
     // much
     column_.reserve(5 * n_owned);
     blocks_.reserve(5 * block_size * n_owned + 2);
-    const auto add = [&](const unsigned int j, const double *block, const bool transposed)
-    {
-      if (A_.replacement(j))
-      {
-        for (const auto &[i, T_block] : *A_.replacement(j))
-          if (aggregate_[i] != none)
-          {
-            Panel p{};
-            add_product(T_block.data(), false, P_0.panels[i], p);
-            add_product(block, transposed, p, row[aggregate_[i]]);
-          }
-      }
-      else if (aggregate_[j] != none)
-        add_product(block, transposed, P_0.panels[j], row[aggregate_[j]]);
-    };
     for (unsigned int i = 0; i < n_owned; ++i)
     {
       if (!A_.replacement(i))
-        K.for_row(i, add);
+        K.for_row(i,
+                  [&](const unsigned int j, const double *block, const bool transposed)
+                  { add_row(A_, P_0, j, block, transposed, row); });
       if (const auto more = constrained.find(i); more != constrained.end())
         for (const auto &[a, panel] : more->second)
           for (unsigned int c = 0; c < dim; ++c)
             row[local(a)].row[c] += panel.row[c];
-      if (aggregate_[i] != none)
-        row[aggregate_[i]];
+      const unsigned int own = P_0.column[i];
+      if (own != none)
+        row[own];
       for (unsigned int k = 0; k < row.columns().size(); ++k)
       {
         const unsigned int a = row.columns()[k];
@@ -202,7 +223,7 @@ namespace Nodus
         float block[block_size + 2];
         for (unsigned int c = 0; c < dim; ++c) // in this order: each row overwrites what the one before spilt over
         {
-          const auto exact   = a == aggregate_[i] ? P_0.panels[i].row[c] - omega * p.row[c] : -omega * p.row[c];
+          const auto exact   = a == own ? P_0.panels[i].row[c] - omega * p.row[c] : -omega * p.row[c];
           const auto rounded = __builtin_convertvector(exact, ModePanel::Stored);
           std::memcpy(block + n_modes * c, &rounded, sizeof(rounded));
         }

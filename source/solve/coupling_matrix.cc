@@ -11,20 +11,24 @@ namespace Nodus
                                  const Ownership                &domain)
       : communicator_(range.communicator())
   {
-    std::vector<DoFIndex> used, ghosts;
-    used.reserve(entries.size());
+    constexpr std::uint32_t    none = static_cast<std::uint32_t>(-1);
+    std::vector<std::uint32_t> column_of(domain.end() - domain.begin(), none); // owned ones
+    std::vector<DoFIndex>      ghosts;
+    const auto                 owned = [&](const DoFIndex c) { return c >= domain.begin() && c < domain.end(); };
     for (const MatrixEntry &e : entries)
-      used.push_back(e.column);
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
-    for (const DoFIndex c : used)
-      if (c >= domain.begin() && c < domain.end())
-      {
-        columns_.push_back(c);
-        position_.push_back(c - domain.begin());
-      }
+      if (owned(e.column))
+        column_of[e.column - domain.begin()] = 0;
       else
-        ghosts.push_back(c);
+        ghosts.push_back(e.column);
+    for (std::uint32_t i = 0; i < column_of.size(); ++i)
+      if (column_of[i] != none)
+      {
+        column_of[i] = columns_.size();
+        columns_.push_back(domain.begin() + i);
+        position_.push_back(i);
+      }
+    std::sort(ghosts.begin(), ghosts.end());
+    ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
     const std::size_t n_owned = columns_.size();
     columns_.insert(columns_.end(), ghosts.begin(), ghosts.end());
     at_columns_.resize(columns_.size());
@@ -39,9 +43,9 @@ namespace Nodus
         rows_.push_back(e.row - range.begin());
         start_.push_back(column_.size());
       }
-      const bool owned = e.column >= domain.begin() && e.column < domain.end();
-      const auto begin = columns_.begin() + (owned ? 0 : n_owned), end = owned ? begin + n_owned : columns_.end();
-      column_.push_back(std::lower_bound(begin, end, e.column) - columns_.begin());
+      column_.push_back(owned(e.column) ?
+                            column_of[e.column - domain.begin()] :
+                            n_owned + (std::lower_bound(ghosts.begin(), ghosts.end(), e.column) - ghosts.begin()));
       value_.push_back(e.value);
     }
     start_.push_back(column_.size());

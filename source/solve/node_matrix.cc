@@ -12,15 +12,6 @@
 
 namespace Nodus
 {
-  namespace
-  {
-    void make_unique_ascending(std::vector<DoFIndex> &indices)
-    {
-      std::sort(indices.begin(), indices.end());
-      indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-    }
-  } // namespace
-
   NodeMap::NodeMap(const dealii::IndexSet &owned, std::vector<DoFIndex> ghosts, const MPI_Comm communicator)
       : communicator_(communicator)
       , start_(1, 0)

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 
 namespace Nodus
@@ -55,8 +56,9 @@ namespace Nodus
     for (const auto &[source, received] : some_to_some(communicator_, outgoing))
       entries.insert(entries.end(), received.begin(), received.end());
 
-    const auto before = [](const MatrixEntry &a, const MatrixEntry &b)
-    { return a.row != b.row ? a.row < b.row : a.column < b.column; };
+    static_assert(sizeof(DoFIndex) == 4, "deal.II with indices of 64 bits: compare rows and columns one by one");
+    const auto place  = [](const MatrixEntry &e) { return static_cast<std::uint64_t>(e.row) << 32 | e.column; };
+    const auto before = [&](const MatrixEntry &a, const MatrixEntry &b) { return place(a) < place(b); };
     if (!std::is_sorted(entries.begin(), entries.end(), before))
       std::sort(entries.begin(), entries.end(), before);
     std::size_t n = 0;

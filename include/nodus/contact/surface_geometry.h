@@ -59,6 +59,15 @@ namespace Nodus
       const FaceShape shape(shape_degree_, xi, eta);
       return FaceGeometry(shape, points_.data() + f * shape.n);
     }
+    /// The face is the Lagrange interpolation of these (shape_degree + 1)^2 points.
+    unsigned int shape_degree() const
+    {
+      return shape_degree_;
+    }
+    const Point *shape_points(const unsigned int f) const
+    {
+      return points_.data() + f * (shape_degree_ + 1) * (shape_degree_ + 1);
+    }
     /// Outward unit normal of the face.
     Vector3 normal(unsigned int f, double xi, double eta) const;
     /// Outward unit normal interpolated from the averaged ones of the nodes.
@@ -100,6 +109,7 @@ namespace Nodus
     std::vector<unsigned int> start_, occurrence_;
     std::vector<FaceShape>    node_shapes_; ///< of the displacement at the nodes of a face
     std::vector<Point>        points_;      ///< per face, (shape_degree + 1)^2
+    std::vector<Vector3>      offsets_;     ///< of these, where the surface is smoothed
 
     void average_normals();
     /// Calls g(face, shape there) for the faces around a surface node that belong to one smooth

@@ -65,7 +65,7 @@ namespace Nodus
     std::vector<DoFIndex>     starts_;           ///< of the aggregates of each rank, and the number of all
     DoFIndex                  first_ = 0;
     std::vector<DoFIndex>     ghosts_;    ///< aggregates of other ranks, ascending
-    std::vector<unsigned int> aggregate_; ///< of the local nodes, or invalid
+    std::vector<unsigned int> aggregate_; ///< of the owned nodes, or invalid
     std::vector<double>       tentative_; ///< like modes; while P is made
     std::vector<double>       coarse_modes_;
     // P: per entry a local aggregate and three displacements by six modes, row by row. Single precision halves what a

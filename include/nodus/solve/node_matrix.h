@@ -16,6 +16,12 @@
 
 namespace Nodus
 {
+  inline void make_unique_ascending(std::vector<DoFIndex> &indices)
+  {
+    std::sort(indices.begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+  }
+
   /// Values at the nodes of a NodeMap, three each, the owned ones and the ghosts in arrays of their own.
   struct NodeValues
   {
