@@ -1,5 +1,6 @@
 #include <nodus/bulk/solid_assembler_scratch.h>
 #include <nodus/bulk/throw_everywhere.h>
+#include <nodus/wait_for_all.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe_values.h>
@@ -401,6 +402,7 @@ namespace Nodus
         scatter(c, v, *tangent);
       }
     }
+    wait_for_all(dof_handler.get_communicator()); // the ranks at the contact have fewer cells
     constrained.exchange(!failure.empty(), tangent, {nodal_internal, nodal_external, nodal_rhs});
     for (unsigned int i = 0; i < dofs.size(); ++i)
       nodal_rhs[i] = is_prescribed[i] ? 0. : nodal_rhs[i] + nodal_external[i] - nodal_internal[i];

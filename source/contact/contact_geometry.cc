@@ -138,6 +138,7 @@ namespace Nodus
   ContactGeometry::ContactGeometry(const std::vector<ContactPairParameters> &pairs,
                                    const ContactSurfaces                    &surfaces,
                                    const std::vector<Point>                 &positions)
+      : reach(search_reach(pairs, surfaces, positions))
   {
     slave.reserve(pairs.size());
     master.reserve(pairs.size()); // the searches refer to the masters
@@ -148,7 +149,6 @@ namespace Nodus
       search.emplace_back(master[p]);
       rigid.push_back(surfaces.rigid_master(p));
     }
-    reach = search_reach(pairs, surfaces, positions);
   }
 
   RigidPoint

@@ -145,10 +145,10 @@ namespace Nodus
       {
         for (unsigned int iteration = 0; iteration < 20; ++iteration)
         {
-          const Tangents t        = tangents(xi, eta);
-          const auto     r        = p - t.x;
-          const double   det      = cross(t.d_xi, t.d_eta);
-          const double   step_xi  = cross(r, t.d_eta) / det, step_eta = cross(t.d_xi, r) / det;
+          const Tangents t       = tangents(xi, eta);
+          const auto     r       = p - t.x;
+          const double   det     = cross(t.d_xi, t.d_eta);
+          const double   step_xi = cross(r, t.d_eta) / det, step_eta = cross(t.d_xi, r) / det;
           xi += step_xi;
           eta += step_eta;
           if (!(std::abs(xi) + std::abs(eta) < 10.))
@@ -196,9 +196,8 @@ namespace Nodus
     }
     FlatFace facet(const SurfaceGeometry &surface, const unsigned int f, const Plane &plane)
     {
-      return FlatFace(surface.degree(),
-                      plane,
-                      [&](const unsigned int n) { return surface.positions()[surface.face(f).nodes[n]]; });
+      return FlatFace(
+          surface.degree(), plane, [&](const unsigned int n) { return surface.positions()[surface.face(f).nodes[n]]; });
     }
   } // namespace
 
@@ -257,7 +256,7 @@ namespace Nodus
             continue;
 
           const FlatFace master_face = smooth_face(master, m, plane);
-          double xi = (cell % degree + 0.5) / degree, eta = (cell / degree + 0.5) / degree;
+          double         xi = (cell % degree + 0.5) / degree, eta = (cell / degree + 0.5) / degree;
           double master_xi = (master_cell % degree + 0.5) / degree, master_eta = (master_cell / degree + 0.5) / degree;
           for (unsigned int t = 2; t < polygon.n; ++t)
           {
@@ -272,14 +271,14 @@ namespace Nodus
                 return 0.; // the face is folded over: no partner
               }
               // the partner lies on the smoothed faces, straight across
-              const Point x = slave.at(f, xi, eta).x;
+              const Point x = slave.position(f, xi, eta);
               if (!master_face.invert(plane(x), master_xi, master_eta))
               {
                 master_xi  = (master_cell % degree + 0.5) / degree;
                 master_eta = (master_cell / degree + 0.5) / degree;
                 continue;
               }
-              const Vector3 gap = master.at(m, master_xi, master_eta).x - x;
+              const Vector3 gap = master.position(m, master_xi, master_eta) - x;
               if (gap.norm() > reach)
                 continue;
               const double area = twice_area * rule.weight(q);

@@ -36,9 +36,17 @@ namespace Nodus
     {
       std::vector<DoFIndex>       aggregates; ///< global number of each column
       std::vector<unsigned int>   column;     ///< of each node, or none
+      std::vector<unsigned int>   unreplaced; ///< the same where T is the identity, and none elsewhere
       std::vector<Panel>          panels;     ///< of each node
       std::map<unsigned int, Row> replaced;   ///< rows of T P_0 at nodes that T replaces
     };
+
+    void find_unreplaced(const ConstrainedMatrix &A, Tentative &P_0)
+    {
+      P_0.unreplaced = P_0.column;
+      for (const auto &[z, row] : A.replacements())
+        P_0.unreplaced[z] = none;
+    }
 
     Tentative at_local_nodes(const ConstrainedMatrix         &A,
                              const std::vector<double>       &tentative,
@@ -66,10 +74,10 @@ namespace Nodus
           result.aggregates.push_back(static_cast<DoFIndex>(*number[i]));
       make_unique_ascending(result.aggregates);
       for (unsigned int i = 0; i < n; ++i)
-        result.column.push_back(
-            *number[i] < 0. ? none
-                            : std::lower_bound(result.aggregates.begin(), result.aggregates.end(), *number[i]) -
-                                  result.aggregates.begin());
+        result.column.push_back(*number[i] < 0.
+                                    ? none
+                                    : std::lower_bound(result.aggregates.begin(), result.aggregates.end(), *number[i]) -
+                                          result.aggregates.begin());
       SparseRow sum;
       sum.reinit(result.aggregates.size());
       for (const auto &[z, T_z] : A.replacements())
@@ -79,22 +87,23 @@ namespace Nodus
             add_product(block.data(), false, result.panels[i], sum[result.column[i]]);
         result.replaced[z] = take(sum);
       }
+      find_unreplaced(A, result);
       return result;
     }
 
     /// sum += block (T P_0)_j
-    void add_row(const ConstrainedMatrix &A,
-                 const Tentative         &P_0,
-                 const unsigned int       j,
-                 const double *const      block,
-                 const bool               transposed,
-                 SparseRow               &sum)
+    inline void add_row(const ConstrainedMatrix &A,
+                        const Tentative         &P_0,
+                        const unsigned int       j,
+                        const double *const      block,
+                        const bool               transposed,
+                        SparseRow               &sum)
     {
-      if (A.replacement(j))
+      if (const unsigned int a = P_0.unreplaced[j]; a != none)
+        add_product(block, transposed, P_0.panels[j], sum[a]);
+      else if (A.replacement(j))
         for (const auto &[a, panel] : P_0.replaced.at(j))
           add_product(block, transposed, panel, sum[a]);
-      else if (P_0.column[j] != none)
-        add_product(block, transposed, P_0.panels[j], sum[P_0.column[j]]);
     }
 
     using PanelRow = std::map<DoFIndex, Panel>; // by global aggregate
@@ -168,7 +177,7 @@ namespace Nodus
 
   void Aggregation::smooth(const NodeMatrix &K, const std::vector<std::array<double, 9>> &D_inverse, const double omega)
   {
-    const unsigned int n_owned = nodes_.n_owned();
+    const unsigned int                     n_owned     = nodes_.n_owned();
     Tentative                              P_0         = at_local_nodes(A_, tentative_, aggregate_, first_);
     const std::map<unsigned int, PanelRow> constrained = constrained_rows(A_, K, P_0);
     tentative_                                         = std::vector<double>();
@@ -194,6 +203,7 @@ namespace Nodus
     for (auto &[z, T_row] : P_0.replaced)
       for (auto &[column, panel] : T_row)
         column = local_column[column];
+    find_unreplaced(A_, P_0);
 
     SparseRow row;
     row.reinit(n_aggregates_ + ghosts_.size());

@@ -43,9 +43,9 @@ namespace Nodus
         rows_.push_back(e.row - range.begin());
         start_.push_back(column_.size());
       }
-      column_.push_back(owned(e.column) ?
-                            column_of[e.column - domain.begin()] :
-                            n_owned + (std::lower_bound(ghosts.begin(), ghosts.end(), e.column) - ghosts.begin()));
+      column_.push_back(owned(e.column)
+                            ? column_of[e.column - domain.begin()]
+                            : n_owned + (std::lower_bound(ghosts.begin(), ghosts.end(), e.column) - ghosts.begin()));
       value_.push_back(e.value);
     }
     start_.push_back(column_.size());

@@ -59,6 +59,15 @@ namespace Nodus
       const FaceShape shape(shape_degree_, xi, eta);
       return FaceGeometry(shape, points_.data() + f * shape.n);
     }
+    Point position(const unsigned int f, const double xi, const double eta) const
+    {
+      const FaceShape    shape(shape_degree_, xi, eta);
+      const Point *const points = shape_points(f);
+      Point              x;
+      for (unsigned int n = 0; n < shape.n; ++n)
+        x += shape.value[n] * points[n];
+      return x;
+    }
     /// The face is the Lagrange interpolation of these (shape_degree + 1)^2 points.
     unsigned int shape_degree() const
     {
