@@ -247,8 +247,9 @@ namespace Nodus
   {
     const auto active = [&](const unsigned int site) { return residual.jump[site].norm_square() > 0.; };
 
-    Sum    sum;
-    Blocks blocks;
+    Sum            sum;
+    Blocks         blocks;
+    ProjectedPoint point; // kept: its lists are of the same lengths everywhere
     for (const AveragedJump::Face &face : averaged_.faces())
     {
       blocks.clear();
@@ -256,7 +257,7 @@ namespace Nodus
       const unsigned int n      = slaves.size();
       for (unsigned int q = 0; q < face.points.size(); ++q)
       {
-        ProjectedPoint point;
+        point.clear();
         for (unsigned int a = 0; a < n; ++a)
           if (const unsigned int k = slaves[a]; averaged_.covered(k) && active(k))
             point.sites.emplace_back(k, face.psi[n * q + a] / averaged_.row(k).area);

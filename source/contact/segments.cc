@@ -234,13 +234,15 @@ namespace Nodus
       face_area += cell_area;
 
       // the cell swept along its normal
-      std::vector<Point> swept;
+      Point low = corner[0], high = low;
       for (const Point &x : corner)
-      {
-        swept.push_back(x + reach * plane.normal);
-        swept.push_back(x - reach * plane.normal);
-      }
-      search.candidates(dealii::BoundingBox<dim>(swept), candidates);
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          const double swept = reach * std::abs(plane.normal[c]);
+          low[c]             = std::min(low[c], x[c] - swept);
+          high[c]            = std::max(high[c], x[c] + swept);
+        }
+      search.candidates(dealii::BoundingBox<dim>({low, high}), candidates);
 
       for (const unsigned int m : candidates)
         for (unsigned int master_cell = 0; master_cell < n_cells(degree); ++master_cell)

@@ -50,6 +50,14 @@ namespace Nodus
       Vector3            dual[2];  ///< x^alpha, zero where xi^alpha is held at an edge of the face
       Vector3            tangent[2];
       std::vector<std::pair<unsigned int, double>> sites; ///< and c_q
+
+      void clear()
+      {
+        for (auto *const entries : {&motion, &shape[0], &shape[1]})
+          entries->clear();
+        dual[0] = dual[1] = Vector3();
+        sites.clear();
+      }
     };
     ProjectedPoint slave_point(unsigned int site) const;
     void           project(unsigned int pair, const Projection &master, ProjectedPoint &point) const;

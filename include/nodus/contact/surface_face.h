@@ -56,8 +56,46 @@ namespace Nodus
   {
     unsigned int          n; ///< (degree+1)^2
     std::array<double, 9> value, d_xi, d_eta;
-    FaceShape(unsigned int degree, double xi, double eta);
+    FaceShape(unsigned int degree, double xi, double eta); // inline: often nothing but values is wanted
+
+  private:
+    static void lagrange(unsigned int degree, double s, double value[3], double derivative[3]);
   };
+
+  inline void FaceShape::lagrange(const unsigned int degree, const double s, double value[3], double derivative[3])
+  {
+    if (degree == 1)
+    {
+      value[0]      = 1 - s;
+      value[1]      = s;
+      derivative[0] = -1;
+      derivative[1] = 1;
+    }
+    else
+    {
+      value[0]      = (2 * s - 1) * (s - 1);
+      value[1]      = 4 * s * (1 - s);
+      value[2]      = s * (2 * s - 1);
+      derivative[0] = 4 * s - 3;
+      derivative[1] = 4 - 8 * s;
+      derivative[2] = 4 * s - 1;
+    }
+  }
+
+  inline FaceShape::FaceShape(const unsigned int degree, const double xi, const double eta)
+      : n((degree + 1) * (degree + 1))
+  {
+    double a[3], da[3], b[3], db[3];
+    lagrange(degree, xi, a, da);
+    lagrange(degree, eta, b, db);
+    for (unsigned int j = 0, k = 0; j <= degree; ++j)
+      for (unsigned int i = 0; i <= degree; ++i, ++k)
+      {
+        value[k] = a[i] * b[j];
+        d_xi[k]  = da[i] * b[j];
+        d_eta[k] = a[i] * db[j];
+      }
+  }
 
   /// Position and tangents of a face at a shape point.
   struct FaceGeometry
