@@ -24,10 +24,10 @@ namespace Nodus
       unsigned int                                 n; ///< of the face
       std::vector<std::pair<unsigned int, double>> masters;
     };
-    std::vector<Follower> hanging;
+    std::vector<Follower> hanging = {};
     /// Slave faces: numbers of the slave nodes whose basis functions are not zero on the face, ...
-    std::vector<unsigned int> slaves;
-    std::vector<double>       basis; ///< ... and these in the face's shape functions, [node][slave]; empty: the same
+    std::vector<unsigned int> slaves = {};
+    std::vector<double> basis = {}; ///< ... and these in the face's shape functions, [node][slave]; empty: the same
 
     const Follower *follower(const unsigned int n) const
     {
