@@ -207,11 +207,20 @@ namespace Nodus
     }
     const auto boxes_of_rank = dealii::Utilities::MPI::all_gather(communicator, boxes);
 
+    const auto has_masters   = [&](const unsigned int r, const unsigned int p) { return boxes_of_rank[r][7 * p] > 0.; };
+    const auto nobody_to_ask = [&](const unsigned int p)
+    {
+      for (unsigned int r = 0; r < boxes_of_rank.size(); ++r)
+        if (r != rank && has_masters(r, p))
+          return false;
+      return true;
+    };
+
     // Slave faces with sites of this rank, and the ranks to ask about each.
     std::vector<Question> mine;
     for (unsigned int p = 0; p < pairs.size(); ++p)
       for (const SurfaceFace &face : surfaces.slave_faces(p))
-        if (surfaces.rigid_master(p) != nullptr)
+        if (surfaces.rigid_master(p) != nullptr || nobody_to_ask(p))
           break;
         else if (face.owner == rank || std::any_of(face.slaves.begin(),
                                                    face.slaves.end(),
@@ -239,7 +248,7 @@ namespace Nodus
     const auto within = [&](const unsigned int r, const Question &question, const double distance)
     {
       const double *const b = boxes_of_rank[r].data() + 7 * question.pair;
-      return r != rank && b[0] > 0. &&
+      return r != rank && has_masters(r, question.pair) &&
              smallest_distance(question.box(), Box({Point(b[1], b[2], b[3]), Point(b[4], b[5], b[6])})) <= distance;
     };
 

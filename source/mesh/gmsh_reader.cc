@@ -1,309 +1,19 @@
+#include <nodus/mesh/gmsh_content.h>
 #include <nodus/mesh/gmsh_reader.h>
 
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/grid/grid_tools.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
-#include <string_view>
-#include <unordered_map>
 
 namespace Nodus
 {
   namespace
   {
-    using PhysicalIds = std::vector<int>;
-    using Face        = std::array<unsigned int, 4>;
-  } // namespace
-
-  /// The file as it is, before any selection.
-  struct GmshFile::Content
-  {
-    /// Groups index into physical, nodes into vertices, the corners first.
-    struct Hexahedron
-    {
-      unsigned int group, first_node;
-    };
-    struct Quadrilateral
-    {
-      unsigned int group;
-      Face         corners;
-    };
-    struct Other
-    {
-      unsigned int group;
-      const char  *type;
-    };
-    std::vector<Point>         vertices;
-    std::vector<PhysicalIds>   physical; ///< combinations of ids that elements have
-    std::vector<Hexahedron>    hexahedra;
-    std::vector<unsigned int>  nodes; ///< of the hexahedra
-    unsigned int               n_nodes_per_hexahedron = 8;
-    std::vector<Quadrilateral> quadrilaterals;
-    std::vector<Other>         others; ///< volume elements that are no hexahedra
-  };
-
-  namespace
-  {
-    [[noreturn]] void refuse(const std::string &file, const std::string &reason)
-    {
-      throw InputError("mesh file " + file + ": " + reason);
-    }
-
-    /// Reads one file; every failure carries its name.
-    class Reader
-    {
-    public:
-      explicit Reader(const std::string &file)
-          : file_(file)
-      {
-        std::ifstream in(file, std::ios::binary);
-        if (!in)
-          fail("cannot be opened; the path is relative to the folder of the .prm file");
-        text_.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-        here_ = text_.data();
-        end_  = here_ + text_.size();
-      }
-
-      GmshFile::Content read()
-      {
-        std::string version;
-        for (std::string_view section; !(section = word()).empty();)
-        {
-          // A file may hold sections that say nothing about the mesh (names, periodicity, fields): skip them whole.
-          if (section == "$MeshFormat")
-            version = read_format();
-          else if (version.empty())
-            break;
-          else if (section == "$Entities")
-            read_entities();
-          else if (section == "$Nodes")
-            version == "2.2" ? read_nodes_22() : read_nodes_41();
-          else if (section == "$Elements")
-            version == "2.2" ? read_elements_22() : read_elements_41();
-          else if (section[0] == '$' && section.substr(0, 4) != "$End")
-            skip_section();
-        }
-        if (version.empty())
-          fail("is not a gmsh .msh file: it does not start with $MeshFormat");
-        return std::move(content_);
-      }
-
-    private:
-      [[noreturn]] void fail(const std::string &reason) const
-      {
-        refuse(file_, reason);
-      }
-
-      static bool is_space(const char c)
-      {
-        return c == ' ' || (c >= '\t' && c <= '\r');
-      }
-
-      /// The next word, empty at the end of the file.
-      std::string_view word()
-      {
-        while (here_ != end_ && is_space(*here_))
-          ++here_;
-        const char *const begin = here_;
-        while (here_ != end_ && !is_space(*here_))
-          ++here_;
-        return std::string_view(begin, here_ - begin);
-      }
-
-      /// From here to behind the line that ends the section.
-      void skip_section()
-      {
-        const std::string_view rest(here_, end_ - here_);
-        const auto             last = rest.find("\n$End");
-        here_                       = last == std::string_view::npos ? end_ : here_ + last + 1;
-        word();
-      }
-
-      template <typename Number>
-      Number next()
-      {
-        while (here_ != end_ && (is_space(*here_) || *here_ == '+'))
-          ++here_;
-        Number     value{};
-        const auto result = std::from_chars(here_, end_, value);
-        if (result.ec != std::errc() || (result.ptr != end_ && !is_space(*result.ptr)))
-          fail("ends early or holds text where a number belongs; write it again with gmsh");
-        here_ = result.ptr;
-        return value;
-      }
-
-      std::string read_format()
-      {
-        const std::string version(word());
-        const bool        binary = next<int>() != 0;
-        if (binary)
-          fail("is binary: save with Mesh.Binary=0");
-        if (version != "2.2" && version != "4.1")
-          fail("has format " + version + ": save with Mesh.MshFileVersion=4.1 (or 2.2)");
-        return version;
-      }
-
-      unsigned int group_of(PhysicalIds ids)
-      {
-        const auto [group, is_new] = group_.try_emplace(std::move(ids), content_.physical.size());
-        if (is_new)
-          content_.physical.push_back(group->first);
-        return group->second;
-      }
-
-      unsigned int read_physical_ids()
-      {
-        PhysicalIds ids(next<std::size_t>());
-        for (int &id : ids)
-          id = std::abs(next<int>()); // the sign holds the orientation only
-        return group_of(std::move(ids));
-      }
-
-      /// Which physical groups each curve, surface, ... is in (4.1 only).
-      void read_entities()
-      {
-        std::array<std::size_t, 4> n;
-        for (auto &i : n)
-          i = next<std::size_t>();
-        for (unsigned int d = 0; d < 4; ++d)
-          for (std::size_t i = 0; i < n[d]; ++i)
-          {
-            const int tag = next<int>();
-            for (unsigned int j = 0; j < (d == 0 ? 3 : 6); ++j)
-              next<double>(); // position or bounding box
-            entities_[{d, tag}] = read_physical_ids();
-            if (d > 0)
-              for (auto j = next<std::size_t>(); j > 0; --j)
-                next<int>(); // the entities that bound it
-          }
-      }
-
-      void read_vertex(const long tag)
-      {
-        Point p;
-        for (unsigned int d = 0; d < dim; ++d)
-          p[d] = next<double>();
-        index_[tag] = content_.vertices.size();
-        content_.vertices.push_back(p);
-      }
-
-      void read_nodes_22()
-      {
-        const auto n = next<std::size_t>();
-        for (std::size_t i = 0; i < n; ++i)
-          read_vertex(next<long>());
-      }
-
-      void read_nodes_41()
-      {
-        const auto n_blocks = next<std::size_t>();
-        for (unsigned int i = 0; i < 3; ++i)
-          next<std::size_t>(); // number of nodes, smallest and largest tag
-        for (std::size_t block = 0; block < n_blocks; ++block)
-        {
-          const auto dimension = next<int>();
-          next<int>(); // entity
-          const bool        parametric = next<int>() != 0;
-          std::vector<long> tags(next<std::size_t>());
-          for (long &tag : tags)
-            tag = next<long>();
-          for (const long tag : tags)
-          {
-            read_vertex(tag);
-            for (int d = 0; parametric && d < dimension; ++d)
-              next<double>();
-          }
-        }
-      }
-
-      void read_elements_22()
-      {
-        std::vector<int> tags;
-        for (auto n = next<std::size_t>(); n > 0; --n)
-        {
-          next<long>(); // element number
-          const auto type = next<int>();
-          tags.resize(next<std::size_t>());
-          for (int &tag : tags)
-            tag = next<int>();
-          read_element(type, group_of(tags.empty() || tags[0] == 0 ? PhysicalIds() : PhysicalIds{std::abs(tags[0])}));
-        }
-      }
-
-      void read_elements_41()
-      {
-        const auto n_blocks = next<std::size_t>();
-        for (unsigned int i = 0; i < 3; ++i)
-          next<std::size_t>(); // number of elements, smallest and largest tag
-        for (std::size_t block = 0; block < n_blocks; ++block)
-        {
-          const auto         dimension = next<int>();
-          const auto         tag       = next<int>();
-          const auto         type      = next<int>();
-          const auto         entity    = entities_.find({dimension, tag});
-          const unsigned int group     = entity != entities_.end() ? entity->second : group_of({});
-          for (auto n = next<std::size_t>(); n > 0; --n)
-          {
-            next<long>(); // element number
-            read_element(type, group);
-          }
-        }
-      }
-
-      void read_element(const int type, const unsigned int group)
-      {
-        // gmsh's types 1 to 19 are the elements of first and second order
-        static constexpr unsigned int n_nodes[20] = {0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13};
-        if (type < 1 || type > 19)
-          fail("holds elements of gmsh type " + std::to_string(type) +
-               ", nodus reads those of first and second order only: save with Mesh.ElementOrder=2 or 1");
-
-        std::array<unsigned int, 27> nodes;
-        for (unsigned int i = 0; i < n_nodes[type]; ++i)
-        {
-          const auto tag   = next<long>();
-          const auto index = index_.find(tag);
-          if (index == index_.end())
-            fail("uses node " + std::to_string(tag) + ", which it does not define; write it again with gmsh");
-          nodes[i] = index->second;
-        }
-        const auto is = [type](const std::initializer_list<int> types)
-        { return std::find(types.begin(), types.end(), type) != types.end(); };
-        if (is({3, 10, 16}))
-          content_.quadrilaterals.push_back({group, {{nodes[0], nodes[1], nodes[2], nodes[3]}}});
-        else if (is({5, 12, 17}))
-        {
-          if (!content_.hexahedra.empty() && content_.n_nodes_per_hexahedron != n_nodes[type])
-            fail("mixes hexahedra of " + std::to_string(content_.n_nodes_per_hexahedron) + " and of " +
-                 std::to_string(n_nodes[type]) +
-                 " nodes: save the whole mesh with one Mesh.ElementOrder and one Mesh.SecondOrderIncomplete");
-          content_.n_nodes_per_hexahedron = n_nodes[type];
-          content_.hexahedra.push_back({group, static_cast<unsigned int>(content_.nodes.size())});
-          content_.nodes.insert(content_.nodes.end(), nodes.begin(), nodes.begin() + n_nodes[type]);
-        }
-        else if (is({4, 11}))
-          content_.others.push_back({group, "tetrahedra"});
-        else if (is({6, 13, 18}))
-          content_.others.push_back({group, "prisms"});
-        else if (is({7, 14, 19}))
-          content_.others.push_back({group, "pyramids"});
-      }
-
-      std::string                                 file_, text_;
-      const char                                 *here_ = nullptr, *end_ = nullptr;
-      GmshFile::Content                           content_;
-      std::unordered_map<long, unsigned int>      index_; ///< node tag -> index into vertices
-      std::map<PhysicalIds, unsigned int>         group_;
-      std::map<std::pair<int, int>, unsigned int> entities_; ///< group of each curve, surface, ...
-    };
+    using Face = GmshContent::Face;
 
     std::string list(const std::set<int> &ids)
     {
@@ -339,9 +49,9 @@ namespace Nodus
         if (last - first == 1)
           once.push_back(*first);
         else if (last - first > 2)
-          refuse(file,
-                 "a face is shared by more than two hexahedra: cells overlap, or a volume is in two physical "
-                 "groups; give each volume one physical id");
+          refuse_gmsh(file,
+                      "a face is shared by more than two hexahedra: cells overlap, or a volume is in two physical "
+                      "groups; give each volume one physical id");
         first = last;
       }
       return once;
@@ -350,7 +60,7 @@ namespace Nodus
 
   GmshFile::GmshFile(const std::string &name)
       : name_(name)
-      , content_(std::make_unique<Content>(Reader(name).read()))
+      , content_(std::make_unique<GmshContent>(read_gmsh(name)))
   {
   }
   GmshFile::~GmshFile()                    = default;
@@ -358,9 +68,9 @@ namespace Nodus
 
   CoarseMesh GmshFile::body(const std::vector<unsigned int> &volume_ids) const
   {
-    const Content    &file = *content_;
-    std::vector<char> selected; // by group
-    for (const PhysicalIds &physical : file.physical)
+    const GmshContent &file = *content_;
+    std::vector<char>  selected; // by group
+    for (const GmshContent::PhysicalIds &physical : file.physical)
       selected.push_back(volume_ids.empty() ||
                          std::any_of(physical.begin(),
                                      physical.end(),
@@ -374,10 +84,10 @@ namespace Nodus
     for (const auto &other : file.others)
     {
       if (selected[other.group])
-        refuse(name_,
-               "holds " + std::string(other.type) +
-                   ", nodus needs hexahedra only: use transfinite or extruded volumes with Recombine, or select "
-                   "other volumes with 'Volume ids'");
+        refuse_gmsh(name_,
+                    "holds " + std::string(other.type) +
+                        ", nodus needs hexahedra only: use transfinite or extruded volumes with Recombine, or select "
+                        "other volumes with 'Volume ids'");
       has_volume[other.group] = 1;
     }
     std::set<int> present;
@@ -385,12 +95,12 @@ namespace Nodus
       if (has_volume[g])
         present.insert(file.physical[g].begin(), file.physical[g].end());
     if (file.hexahedra.empty())
-      refuse(name_,
-             "holds no hexahedra; check that the volumes are meshed (gmsh -3) and, where the file has physical "
-             "groups, that the volumes are in one");
+      refuse_gmsh(name_,
+                  "holds no hexahedra; check that the volumes are meshed (gmsh -3) and, where the file has physical "
+                  "groups, that the volumes are in one");
     for (const unsigned int id : volume_ids)
       if (present.count(id) == 0)
-        refuse(name_, "has no volume with physical id " + std::to_string(id) + "; ids present: " + list(present));
+        refuse_gmsh(name_, "has no volume with physical id " + std::to_string(id) + "; ids present: " + list(present));
 
     CoarseMesh mesh;
     for (const auto &hexahedron : file.hexahedra)
@@ -414,7 +124,7 @@ namespace Nodus
     std::map<Face, int>     id_of_face;
     for (const auto &quadrilateral : file.quadrilaterals)
     {
-      const PhysicalIds &physical = file.physical[quadrilateral.group];
+      const GmshContent::PhysicalIds &physical = file.physical[quadrilateral.group];
       if (physical.empty())
         continue;
       const Face &c    = quadrilateral.corners;
@@ -430,9 +140,9 @@ namespace Nodus
       {
         std::ostringstream where;
         where << 0.25 * (file.vertices[c[0]] + file.vertices[c[1]] + file.vertices[c[2]] + file.vertices[c[3]]);
-        refuse(name_,
-               "the face at " + where.str() + " has the physical ids " + list(ids) +
-                   "; give each surface one physical id");
+        refuse_gmsh(name_,
+                    "the face at " + where.str() + " has the physical ids " + list(ids) +
+                        "; give each surface one physical id");
       }
       if (other != id_of_face.end())
         continue;

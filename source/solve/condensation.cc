@@ -14,13 +14,6 @@ namespace Nodus
 
     /// Rows of B that are stiffer than this many times the node are constraints to working precision.
     constexpr double constraint_stiffness = 1e10;
-
-    std::array<double, 9> by_rows(const Matrix3 &block)
-    {
-      std::array<double, 9> result;
-      Eigen::Map<Eigen::Matrix<double, dim, dim, Eigen::RowMajor>>(result.data()) = block;
-      return result;
-    }
   } // namespace
 
   Condensation::Condensation(const SaddlePointOperator &system)
@@ -362,59 +355,6 @@ namespace Nodus
     for (unsigned int k = 0; k < sites_.size(); ++k)
       for (unsigned int d = 0; d < sites_[k].n_constraints; ++d)
         Eigen::Map<Eigen::Vector3d>(m + 3 * k) += force[k][d] * sites_[k].turn.col(sites_[k].combination[d]);
-  }
-
-  Condensation::Matrix3 Condensation::stiffness_along_rows(const Site &site) const
-  {
-    const Matrix3 D        = site.flexibility_inverse.asDiagonal();
-    const Matrix3 friction = system_.own_coupling(nodes_.global(site.node));
-    if (friction.isZero(0.))
-      return D;
-    // the rows of friction span the plane in which C_uu acts
-    const Matrix3 inverse = site.rows.front().block.completeOrthogonalDecomposition().pseudoInverse();
-    Matrix3       along   = inverse.transpose() * friction * inverse;
-    for (unsigned int i = 0; i < 3; ++i)
-      if (site.flexibility_inverse[i] == 0.)
-      {
-        along.row(i).setZero();
-        along.col(i).setZero();
-      }
-    return D + along;
-  }
-
-  NodeRow Condensation::transformed_rows(const Site &site) const
-  {
-    std::map<DoFIndex, Matrix3> rows;
-    const auto                  add = [&](const DoFIndex node, const Matrix3 &block)
-    { rows.try_emplace(node, Matrix3::Zero()).first->second += block; };
-    for (const Coupling &coupling : site.rows)
-    {
-      const unsigned int local = nodes_.local(coupling.node);
-      const Row         *row   = local == dealii::numbers::invalid_unsigned_int ? nullptr : rows_[local].get();
-      if (!row)
-      {
-        add(coupling.node, coupling.block);
-        continue;
-      }
-      add(coupling.node, coupling.block * row->own);
-      for (const Coupling &other : row->others)
-        add(other.node, coupling.block * other.block);
-    }
-    NodeRow result;
-    for (const auto &[node, block] : rows)
-      result.emplace_back(node, by_rows(block));
-    return result;
-  }
-
-  Constraints Condensation::constraints() const
-  {
-    Constraints constraints;
-    constraints.T        = T_;
-    constraints.diagonal = eliminated_;
-    for (const Site &site : sites_)
-      if (const Matrix3 D = stiffness_along_rows(site); !D.isZero(0.))
-        constraints.springs.push_back({transformed_rows(site), by_rows(D)});
-    return constraints;
   }
 
   void Condensation::transform_modes(std::vector<double> &modes) const

@@ -1,10 +1,12 @@
 // A mesh from files that will not be refined: each rank builds its cells and those that touch them. Measures, boundary
 // ids, unknowns and the numbers of coarse cells are those of the mesh that p4est divides; faces at which a share ends
-// are no boundary; the shares weigh the same, and slave faces count.
+// are no boundary; the shares weigh the same, and slave faces count. Cuts are where they pass few nodes, unless few
+// ranks would have the contact.
 
 #include "../cases.h"
 
 #include <nodus/mesh/bodies.h>
+#include <nodus/mesh/mesh_share.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_handler.h>
@@ -48,6 +50,56 @@ namespace
           out << '\n';
         }
     out << "$EndElements\n";
+  }
+
+  /// Adds nx by ny by nz cells above z = @p bottom, with vertices of their own.
+  void
+  add_box(CoarseMesh &mesh, const unsigned int nx, const unsigned int ny, const unsigned int nz, const double bottom)
+  {
+    const unsigned int first  = mesh.vertices.size();
+    const auto         vertex = [&](const unsigned int i, const unsigned int j, const unsigned int k)
+    { return first + i + (nx + 1) * (j + (ny + 1) * k); };
+    for (unsigned int k = 0; k <= nz; ++k)
+      for (unsigned int j = 0; j <= ny; ++j)
+        for (unsigned int i = 0; i <= nx; ++i)
+          mesh.vertices.emplace_back(i, j, bottom + k);
+    for (unsigned int k = 0; k < nz; ++k)
+      for (unsigned int j = 0; j < ny; ++j)
+        for (unsigned int i = 0; i < nx; ++i)
+        {
+          auto &cell = mesh.cells.emplace_back();
+          for (unsigned int v = 0; v < 8; ++v)
+            cell.vertices[v] = vertex(i + v % 2, j + v / 2 % 2, k + v / 4);
+        }
+  }
+
+  /// Two equal boxes on each other, the upper one with a slave face below each of its lowest cells, in two parts:
+  /// @returns how many slave faces the part with more of them has.
+  unsigned int slave_faces_of_one(const unsigned int nx, const unsigned int ny, const unsigned int nz)
+  {
+    CoarseMesh mesh;
+    add_box(mesh, nx, ny, nz, 0.);
+    add_box(mesh, nx, ny, nz, nz);
+    std::vector<unsigned int> slave_faces(mesh.cells.size(), 0);
+    std::fill_n(slave_faces.begin() + nx * ny * nz, nx * ny, 1);
+    const std::vector<unsigned int> part     = divide(mesh, slave_faces, 1, 0, 2);
+    unsigned int                    faces[2] = {0, 0};
+    for (unsigned int c = 0; c < part.size(); ++c)
+      faces[part[c]] += slave_faces[c];
+    return std::max(faces[0], faces[1]);
+  }
+
+  /// The cut of a bar is across it.
+  unsigned int vertices_at_cut_of_bar()
+  {
+    CoarseMesh mesh;
+    add_box(mesh, 3, 12, 3, 0.);
+    const std::vector<unsigned int> part = divide(mesh, std::vector<unsigned int>(mesh.cells.size(), 0), 1, 0, 2);
+    std::vector<unsigned int>       touches(mesh.vertices.size(), 0);
+    for (unsigned int c = 0; c < part.size(); ++c)
+      for (const unsigned int v : mesh.cells[c].vertices)
+        touches[v] |= 1U << part[c];
+    return std::count(touches.begin(), touches.end(), 3U);
   }
 
   /// Centres, as keys.
@@ -152,6 +204,10 @@ int main(int argc, char **argv)
   BodyParameters cylinder;
   cylinder.mesh_file = SOURCE_DIR "/../meshes/cylinder_27_2.msh";
   compare("second order", {cylinder}, 3);
+
+  check("a bar is cut across", vertices_at_cut_of_bar(), 16., 0.);
+  check("blocks are cut between the bodies", slave_faces_of_one(6, 6, 6), 36., 0.);
+  check("plates are cut across the contact", slave_faces_of_one(12, 12, 1), 72., 0.);
 
   BodyParameters cell;
   cell.mesh_file = "cell.msh";

@@ -21,6 +21,8 @@ namespace Nodus
     std::vector<QuadraticCell>         curved;   ///< one per cell of a second-order file, else empty
   };
 
+  struct GmshContent;
+
   /// A gmsh file (ASCII, version 2.2 or 4.1), of which several bodies may take their volumes.
   ///
   /// Not GridIn::read_msh: bodies are cut out here before a triangulation exists, so that two bodies may come from one
@@ -39,11 +41,9 @@ namespace Nodus
     /// boundary id of a face is its physical surface.
     CoarseMesh body(const std::vector<unsigned int> &volume_ids) const;
 
-    struct Content;
-
   private:
-    std::string              name_;
-    std::unique_ptr<Content> content_;
+    std::string                  name_;
+    std::unique_ptr<GmshContent> content_;
   };
 } // namespace Nodus
 

@@ -7,6 +7,7 @@
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 
+#include <array>
 #include <map>
 #include <utility>
 #include <vector>
@@ -27,6 +28,12 @@ namespace Nodus
   inline void append(std::vector<double> &numbers, const Eigen::Matrix3d &block)
   {
     numbers.insert(numbers.end(), block.data(), block.data() + 9);
+  }
+  inline std::array<double, 9> by_rows(const Eigen::Matrix3d &block)
+  {
+    std::array<double, 9> result;
+    Eigen::Map<Eigen::Matrix<double, dim, dim, Eigen::RowMajor>>(result.data()) = block;
+    return result;
   }
   inline Eigen::Matrix3d read(const double *&numbers)
   {

@@ -68,11 +68,6 @@ namespace Nodus
     {
       return *C_;
     }
-    /// Coupling of displacements, owned rows, sorted.
-    const std::vector<MatrixEntry> &displacement_entries() const
-    {
-      return uu_entries_;
-    }
     const Ownership &displacement_ownership() const
     {
       return u_ownership_;
@@ -106,7 +101,7 @@ namespace Nodus
     const LinearSystem             &system_;
     const Ownership                 u_ownership_, m_ownership_;
     const dealii::IndexSet          owned_m_;
-    std::vector<MatrixEntry>        uu_entries_;
+    std::vector<MatrixEntry>        uu_entries_;   ///< C_uu: owned rows, sorted
     std::unique_ptr<CouplingMatrix> B_, C_, C_uu_; ///< the last null when it has no entries
     std::vector<double>             scale_;        ///< of owned multipliers: multiplier = scale x unknown
     std::vector<double>             stiffness_;
