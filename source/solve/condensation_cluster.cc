@@ -87,6 +87,8 @@ namespace Nodus
     std::vector<Member> members;
     cluster_ = std::make_unique<ConstraintCluster>();
     for (const auto &part : dealii::Utilities::MPI::all_gather(nodes_.communicator(), mine))
+    {
+      cluster_->n_ranks += !part.empty();
       for (const double *p = part.data(); p != part.data() + part.size();)
       {
         Member member;
@@ -103,6 +105,7 @@ namespace Nodus
         cluster_->size += member.n_constraints;
         members.push_back(std::move(member));
       }
+    }
     std::map<DoFIndex, const Member *> member_of;
     for (const Member &member : members)
       member_of[member.node] = &member;
@@ -164,11 +167,14 @@ namespace Nodus
 
   void Condensation::solve_cluster(std::vector<Eigen::Vector3d> &values, const bool transposed) const
   {
+    if (cluster_->n_ranks == 1 && std::none_of(sites_.begin(), sites_.end(), [](const Site &s) { return s.coupled; }))
+      return;
     std::vector<double> all(cluster_->size, 0.);
     for (unsigned int k = 0; k < sites_.size(); ++k)
       for (unsigned int d = 0; d < sites_[k].n_constraints && sites_[k].coupled; ++d)
         all[cluster_->first.at(nodes_.global(sites_[k].node)) + d] = values[k][d];
-    dealii::Utilities::MPI::sum(all, nodes_.communicator(), all);
+    if (cluster_->n_ranks > 1)
+      dealii::Utilities::MPI::sum(all, nodes_.communicator(), all);
     const Eigen::VectorXd b = Eigen::Map<Eigen::VectorXd>(all.data(), all.size());
     const Eigen::VectorXd x = transposed ? cluster_->M_transposed.solve(b).eval() : cluster_->M.solve(b).eval();
     for (unsigned int k = 0; k < sites_.size(); ++k)

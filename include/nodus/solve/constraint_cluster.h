@@ -21,7 +21,8 @@ namespace Nodus
     std::map<DoFIndex, unsigned int>                                  first;  ///< row of a node's first constraint
     std::vector<std::vector<std::pair<DoFIndex, Eigen::RowVector3d>>> others; ///< R, row by row
     Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> M, M_transposed;
-    unsigned int                                                             size = 0;
+    unsigned int                                                             size    = 0;
+    unsigned int                                                             n_ranks = 0; ///< that own such nodes
   };
 
   /// Blocks as numbers, on their way to other ranks.
