@@ -1,6 +1,7 @@
 #include <nodus/mesh/bodies.h>
 #include <nodus/mesh/expression.h>
 #include <nodus/mesh/mesh_share.h>
+#include <nodus/wait_for_all.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/mpi.templates.h>
@@ -103,8 +104,12 @@ namespace Nodus
   void
   Bodies::make_share(const CoarseMesh &mesh, const std::vector<RegionParameters> &slaves, const MPI_Comm communicator)
   {
-    const unsigned int              n_ranks = dealii::Utilities::MPI::n_mpi_processes(communicator);
-    const std::vector<unsigned int> owner   = owners(mesh, slaves, n_ranks);
+    const unsigned int        n_ranks = dealii::Utilities::MPI::n_mpi_processes(communicator);
+    std::vector<unsigned int> owner(mesh.cells.size()); // one rank divides, the others sleep
+    if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+      owner = owners(mesh, slaves, n_ranks);
+    wait_for_all(communicator);
+    dealii::Utilities::MPI::broadcast(owner.data(), owner.size(), 0, communicator);
     if (std::set<unsigned int>(owner.begin(), owner.end()).size() < n_ranks)
       return make_refinable(mesh, {}, communicator); // p4est allows ranks without a cell
     triangulation_   = std::make_unique<dealii::parallel::fullydistributed::Triangulation<dim>>(communicator);
