@@ -177,10 +177,12 @@ namespace Nodus
 
   void Aggregation::smooth(const NodeMatrix &K, const std::vector<std::array<double, 9>> &D_inverse, const double omega)
   {
-    const unsigned int                     n_owned     = nodes_.n_owned();
-    Tentative                              P_0         = at_local_nodes(A_, tentative_, aggregate_, first_);
-    const std::map<unsigned int, PanelRow> constrained = constrained_rows(A_, K, P_0);
-    tentative_                                         = std::vector<double>();
+    const unsigned int               n_owned = nodes_.n_owned();
+    Tentative                        P_0     = at_local_nodes(A_, tentative_, aggregate_, first_);
+    std::map<unsigned int, PanelRow> constrained;
+    if (A_.constrained())
+      constrained = constrained_rows(A_, K, P_0);
+    tentative_ = std::vector<double>();
 
     for (const DoFIndex a : P_0.aggregates)
       if (!owned(a))

@@ -45,6 +45,11 @@ namespace Nodus
     /// Diagonal blocks of A for the K of the constructor, row by row. Collective.
     std::vector<std::array<double, 9>> diagonal_blocks(const NodeMatrix &K) const;
 
+    /// Whether there is more than K; the same on all ranks.
+    bool constrained() const
+    {
+      return R_ != nullptr;
+    }
     /// Rows of T and of R with local nodes.
     using LocalRow = std::vector<std::pair<unsigned int, std::array<double, 9>>>;
     struct LocalSpring
