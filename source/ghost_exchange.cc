@@ -5,6 +5,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <unordered_map>
 
@@ -14,6 +15,43 @@ namespace Nodus
   {
     constexpr int tag = 4711;
   } // namespace
+
+  /// On their way to and from each neighbour. One takes a long message only when it waits for its own: what is sent
+  /// stays in one of two sets of buffers until the exchange after the next.
+  struct GhostExchange::Messages
+  {
+    struct Set
+    {
+      std::vector<std::vector<char>> buffers; ///< of each neighbour
+      std::vector<MPI_Request>       requests;
+
+      void complete()
+      {
+        MPI_Waitall(requests.size(), requests.data(), MPI_STATUSES_IGNORE);
+        requests.clear();
+      }
+    };
+    Set                incoming;
+    std::array<Set, 2> outgoing;
+    unsigned int       turn = 0;
+
+    explicit Messages(const std::size_t n_neighbours)
+    {
+      for (Set *const set : {&incoming, &outgoing[0], &outgoing[1]})
+        set->buffers.resize(n_neighbours);
+    }
+    Messages(const Messages &) = delete;
+    ~Messages()
+    {
+      for (Set &set : outgoing)
+        set.complete();
+    }
+  };
+
+  GhostExchange::GhostExchange()                                     = default;
+  GhostExchange::GhostExchange(GhostExchange &&) noexcept            = default;
+  GhostExchange &GhostExchange::operator=(GhostExchange &&) noexcept = default;
+  GhostExchange::~GhostExchange()                                    = default;
 
   GhostExchange::GhostExchange(const std::vector<DoFIndex>     &key,
                                const std::vector<unsigned int> &owner,
@@ -77,59 +115,64 @@ namespace Nodus
       neighbour.rank = other;
       neighbours_.push_back(std::move(neighbour));
     }
+    messages_ = std::make_unique<Messages>(neighbours_.size());
   }
 
-  void GhostExchange::exchange() const
+  void GhostExchange::start(const Objects      from,
+                            const void *const  values,
+                            const unsigned int first,
+                            const Objects      to,
+                            const std::size_t  bytes_per_object) const
   {
-    requests_.clear();
-    for (Neighbour &neighbour : neighbours_)
-      if (!neighbour.incoming.empty())
-      {
-        requests_.emplace_back();
-        MPI_Irecv(neighbour.incoming.data(),
-                  neighbour.incoming.size(),
-                  MPI_BYTE,
-                  neighbour.rank,
-                  tag,
-                  communicator_,
-                  &requests_.back());
-      }
-    for (const Neighbour &neighbour : neighbours_)
-      if (!neighbour.outgoing.empty())
-      {
-        requests_.emplace_back();
-        MPI_Isend(neighbour.outgoing.data(),
-                  neighbour.outgoing.size(),
-                  MPI_BYTE,
-                  neighbour.rank,
-                  tag,
-                  communicator_,
-                  &requests_.back());
-      }
-    MPI_Waitall(requests_.size(), requests_.data(), MPI_STATUSES_IGNORE);
-  }
-
-  void GhostExchange::copy(const void *const  owned,
-                           void *const        ghosts,
-                           const unsigned int first_ghost,
-                           const std::size_t  bytes_per_object) const
-  {
-    for (Neighbour &neighbour : neighbours_)
+    if (neighbours_.empty())
+      return;
+    Messages &messages     = *messages_;
+    messages.turn          = 1 - messages.turn;
+    Messages::Set &sent    = messages.outgoing[messages.turn];
+    Messages::Set &awaited = messages.incoming;
+    Assert(awaited.requests.empty(), dealii::ExcMessage("the exchange before has not been finished"));
+    sent.complete();
+    const auto add_message = [&](auto call, Messages::Set &set, const std::size_t k)
     {
-      neighbour.incoming.resize(neighbour.ghosts.size() * bytes_per_object);
-      neighbour.outgoing.resize(neighbour.owned.size() * bytes_per_object);
-      char *to = neighbour.outgoing.data();
-      for (const unsigned int i : neighbour.owned)
-      {
-        std::memcpy(to, static_cast<const char *>(owned) + i * bytes_per_object, bytes_per_object);
-        to += bytes_per_object;
-      }
+      std::vector<char> &buffer = set.buffers[k];
+      if (!buffer.empty())
+        call(buffer.data(),
+             buffer.size(),
+             MPI_BYTE,
+             neighbours_[k].rank,
+             tag,
+             communicator_,
+             &set.requests.emplace_back());
+    };
+    for (std::size_t k = 0; k < neighbours_.size(); ++k)
+    {
+      awaited.buffers[k].resize((neighbours_[k].*to).size() * bytes_per_object);
+      add_message(MPI_Irecv, awaited, k);
     }
-    exchange();
-    for (const Neighbour &neighbour : neighbours_)
+    for (std::size_t k = 0; k < neighbours_.size(); ++k)
     {
-      const char *from = neighbour.incoming.data();
-      for (const unsigned int i : neighbour.ghosts)
+      sent.buffers[k].resize((neighbours_[k].*from).size() * bytes_per_object);
+      char *place = sent.buffers[k].data();
+      for (const unsigned int i : neighbours_[k].*from)
+      {
+        std::memcpy(place, static_cast<const char *>(values) + (i - first) * bytes_per_object, bytes_per_object);
+        place += bytes_per_object;
+      }
+      add_message(MPI_Isend, sent, k);
+    }
+  }
+
+  void GhostExchange::finish_copy(void *const        ghosts,
+                                  const unsigned int first_ghost,
+                                  const std::size_t  bytes_per_object) const
+  {
+    if (neighbours_.empty())
+      return;
+    messages_->incoming.complete();
+    for (std::size_t k = 0; k < neighbours_.size(); ++k)
+    {
+      const char *from = messages_->incoming.buffers[k].data();
+      for (const unsigned int i : neighbours_[k].ghosts)
       {
         std::memcpy(static_cast<char *>(ghosts) + (i - first_ghost) * bytes_per_object, from, bytes_per_object);
         from += bytes_per_object;
@@ -137,28 +180,43 @@ namespace Nodus
     }
   }
 
-  void GhostExchange::add(const double *const ghosts,
-                          double *const       owned,
-                          const unsigned int  first_ghost,
-                          const unsigned int  n_components) const
+  void GhostExchange::sum(std::vector<double> &values, const unsigned int n_components) const
   {
-    const std::size_t bytes_per_object = n_components * sizeof(double);
-    for (Neighbour &neighbour : neighbours_)
+    start(&Neighbour::ghosts, values.data(), 0, &Neighbour::owned, n_components * sizeof(double));
+    finish_add(values.data(), n_components);
+    update(values, n_components);
+  }
+
+  void GhostExchange::start_fetch(const double *const owned, const unsigned int n_components) const
+  {
+    start(&Neighbour::owned, owned, 0, &Neighbour::ghosts, n_components * sizeof(double));
+  }
+
+  void GhostExchange::finish_fetch(double *const ghosts, const unsigned int n_components) const
+  {
+    finish_copy(ghosts, n_owned_, n_components * sizeof(double));
+  }
+
+  void GhostExchange::fetch(const double *const owned, double *const ghosts, const unsigned int n_components) const
+  {
+    start_fetch(owned, n_components);
+    finish_fetch(ghosts, n_components);
+  }
+
+  void GhostExchange::start_add(const double *const ghosts, const unsigned int n_components) const
+  {
+    start(&Neighbour::ghosts, ghosts, n_owned_, &Neighbour::owned, n_components * sizeof(double));
+  }
+
+  void GhostExchange::finish_add(double *const owned, const unsigned int n_components) const
+  {
+    if (neighbours_.empty())
+      return;
+    messages_->incoming.complete();
+    for (std::size_t k = 0; k < neighbours_.size(); ++k)
     {
-      neighbour.incoming.resize(neighbour.owned.size() * bytes_per_object);
-      neighbour.outgoing.resize(neighbour.ghosts.size() * bytes_per_object);
-      char *to = neighbour.outgoing.data();
-      for (const unsigned int i : neighbour.ghosts)
-      {
-        std::memcpy(to, ghosts + std::size_t(i - first_ghost) * n_components, bytes_per_object);
-        to += bytes_per_object;
-      }
-    }
-    exchange();
-    for (const Neighbour &neighbour : neighbours_)
-    {
-      const char *from = neighbour.incoming.data();
-      for (const unsigned int i : neighbour.owned)
+      const char *from = messages_->incoming.buffers[k].data();
+      for (const unsigned int i : neighbours_[k].owned)
         for (unsigned int c = 0; c < n_components; ++c)
         {
           double part;
@@ -169,20 +227,10 @@ namespace Nodus
     }
   }
 
-  void GhostExchange::sum(std::vector<double> &values, const unsigned int n_components) const
-  {
-    add(values.data(), values.data(), 0, n_components);
-    update(values, n_components);
-  }
-
-  void GhostExchange::fetch(const double *const owned, double *const ghosts, const unsigned int n_components) const
-  {
-    copy(owned, ghosts, n_owned_, n_components * sizeof(double));
-  }
-
   void GhostExchange::add(const double *const ghosts, double *const owned, const unsigned int n_components) const
   {
-    add(ghosts, owned, n_owned_, n_components);
+    start_add(ghosts, n_components);
+    finish_add(owned, n_components);
   }
 
   std::vector<std::vector<double>>

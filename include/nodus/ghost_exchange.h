@@ -7,17 +7,23 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <type_traits>
 #include <vector>
 
 namespace Nodus
 {
   /// Arrays with one entry per local object, where every object has one owner and ghosts on other ranks: copies the
-  /// owners' values to the ghosts, or adds the ghosts' values to the owners'. A rank waits for its neighbours alone.
+  /// owners' values to the ghosts, or adds the ghosts' values to the owners'. A rank waits for its neighbours alone,
+  /// and not for them to take what it has sent: deal.II's Partitioner does, and a rank that is ahead would lose its
+  /// lead.
   class GhostExchange
   {
   public:
-    GhostExchange() = default;
+    GhostExchange();
+    GhostExchange(GhostExchange &&) noexcept;
+    GhostExchange &operator=(GhostExchange &&) noexcept;
+    ~GhostExchange();
     /// @p key: number of each local object, the same on all ranks that have it; @p owner: its rank, which must have it.
     /// Collective.
     GhostExchange(const std::vector<DoFIndex> &key, const std::vector<unsigned int> &owner, MPI_Comm communicator);
@@ -31,7 +37,8 @@ namespace Nodus
     void update(std::vector<T> &values, const unsigned int n_components = 1) const
     {
       static_assert(std::is_trivially_copyable<T>::value, "values are sent as bytes");
-      copy(values.data(), values.data(), 0, n_components * sizeof(T));
+      start(&Neighbour::owned, values.data(), 0, &Neighbour::ghosts, n_components * sizeof(T));
+      finish_copy(values.data(), 0, n_components * sizeof(T));
     }
 
     /// Owners and ghosts get the sum over all ranks. Collective.
@@ -41,6 +48,12 @@ namespace Nodus
     void fetch(const double *owned, double *ghosts, unsigned int n_components = 1) const;
     /// Adds the values of ghosts to those of their owners, arrays as in fetch(). Collective.
     void add(const double *ghosts, double *owned, unsigned int n_components = 1) const;
+    /// The same in two steps, between which there may be work that needs no ghosts, but no other exchange of this
+    /// object. Collective.
+    void start_fetch(const double *owned, unsigned int n_components = 1) const;
+    void finish_fetch(double *ghosts, unsigned int n_components = 1) const;
+    void start_add(const double *ghosts, unsigned int n_components = 1) const;
+    void finish_add(double *owned, unsigned int n_components = 1) const;
 
     /// Numbers, as many as there are, for each ghost from its owner, objects numbered through: @p append adds those of
     /// an owned object to the end. Collective.
@@ -53,21 +66,22 @@ namespace Nodus
     {
       unsigned int              rank;
       std::vector<unsigned int> owned, ghosts; ///< local objects that it has as ghosts, and that it owns
-      std::vector<char>         outgoing, incoming;
     };
+    using Objects = std::vector<unsigned int> Neighbour::*;
+    struct Messages;
+
     /// @p ghosts by owner, in the order of @p wanted; @p find: the owned object of a key. Collective.
     void connect(const Keys                                       &wanted,
                  std::map<unsigned int, std::vector<unsigned int>> ghosts,
                  const std::function<unsigned int(DoFIndex)>      &find);
-    void copy(const void *owned, void *ghosts, unsigned int first_ghost, std::size_t bytes_per_object) const;
-    void add(const double *ghosts, double *owned, unsigned int first_ghost, unsigned int n_components) const;
-    /// Sends what is outgoing, and fills what is incoming, of the size that it has.
-    void exchange() const;
+    /// Sends the values of @p from, the first of which is number @p first, and is ready to receive those of @p to.
+    void start(Objects from, const void *values, unsigned int first, Objects to, std::size_t bytes_per_object) const;
+    void finish_copy(void *ghosts, unsigned int first_ghost, std::size_t bytes_per_object) const;
 
-    MPI_Comm                         communicator_ = MPI_COMM_SELF;
-    unsigned int                     n_owned_      = 0; ///< of objects that are numbered through
-    mutable std::vector<Neighbour>   neighbours_;       ///< by rank, so that a run repeats to the last digit
-    mutable std::vector<MPI_Request> requests_;
+    MPI_Comm                  communicator_ = MPI_COMM_SELF;
+    unsigned int              n_owned_      = 0; ///< of objects that are numbered through
+    std::vector<Neighbour>    neighbours_;       ///< by rank, so that a run repeats to the last digit
+    std::unique_ptr<Messages> messages_;
   };
 } // namespace Nodus
 

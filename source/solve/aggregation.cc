@@ -30,6 +30,11 @@ namespace Nodus
     smooth(K, D_inverse, omega);
     exchange_ = GhostExchange::numbered_through(starts_, ghosts_, nodes_.communicator());
     ghost_values_.resize(n_modes * ghosts_.size());
+    for (std::uint32_t i = 0; i < nodes_.n_owned(); ++i)
+      if (std::any_of(column_.begin() + start_[i],
+                      column_.begin() + start_[i + 1],
+                      [this](const std::uint32_t a) { return a >= n_aggregates_; }))
+        interface_.push_back(i);
   }
 
   /// A node and its neighbours, as long as none of them is taken; the others join a neighbour's aggregate. Bodies do
@@ -149,12 +154,24 @@ namespace Nodus
     }
   }
 
+  template <typename Function>
+  void Aggregation::for_interior_rows(const Function &f) const
+  {
+    auto next = interface_.begin();
+    for (std::uint32_t i = 0; i < nodes_.n_owned(); ++i)
+      if (next != interface_.end() && *next == i)
+        ++next;
+      else
+        f(i);
+  }
+
   void Aggregation::restrict_to(double *const coarse, const double *const fine) const
   {
     std::fill_n(coarse, n_modes * n_aggregates_, 0.);
     std::fill(ghost_values_.begin(), ghost_values_.end(), 0.);
-    double *const ghosts = ghost_values_.data();
-    for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
+    double *const ghosts  = ghost_values_.data();
+    const auto    add_row = [&](const std::uint32_t i)
+    {
       for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
       {
         const float *const p = blocks_.data() + block_size * std::size_t(k);
@@ -166,14 +183,18 @@ namespace Nodus
           sum.add_product(Modes::load(p + n_modes * c), fine[dim * i + c]);
         sum.store(values);
       }
-    exchange_.add(ghosts, coarse, n_modes);
+    };
+    for (const std::uint32_t i : interface_)
+      add_row(i);
+    exchange_.start_add(ghosts, n_modes);
+    for_interior_rows(add_row);
+    exchange_.finish_add(coarse, n_modes);
   }
 
   void Aggregation::add_prolongation(double *const fine, const double *const coarse) const
   {
-    exchange_.fetch(coarse, ghost_values_.data(), n_modes);
-    const double *const ghosts = ghost_values_.data();
-    for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
+    const double *const ghosts  = ghost_values_.data();
+    const auto          add_row = [&](const std::uint32_t i)
     {
       Modes sum[dim] = {};
       for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
@@ -187,6 +208,11 @@ namespace Nodus
       }
       for (unsigned int c = 0; c < dim; ++c)
         fine[dim * i + c] += sum[c].sum();
-    }
+    };
+    exchange_.start_fetch(coarse, n_modes);
+    for_interior_rows(add_row);
+    exchange_.finish_fetch(ghost_values_.data(), n_modes);
+    for (const std::uint32_t i : interface_)
+      add_row(i);
   }
 } // namespace Nodus

@@ -84,6 +84,8 @@ namespace Nodus
     }
     if (dealii::Utilities::MPI::max(failure.empty() ? 0 : 1, nodes_.communicator()) != 0)
       throw NotCondensable(failure.empty() ? "another process has constraints that cannot be condensed" : failure);
+    const bool here = std::any_of(sites_.begin(), sites_.end(), [](const Site &site) { return site.has_spring; });
+    has_springs_    = dealii::Utilities::MPI::max(here ? 1 : 0, nodes_.communicator()) != 0;
   }
 
   /// Finds the constraints of a site and its basis: directions of the constraints, those of stiff rows, prescribed
@@ -119,6 +121,7 @@ namespace Nodus
       else if (stiffness > c * site.diagonal)
         kind[i] = Kind::stiff;
       site.flexibility_inverse[i] = rigid || c == 0. ? 0. : 1. / c;
+      site.has_spring             = site.has_spring || (site.flexibility_inverse[i] != 0. && square > 0.);
     }
 
     unsigned int n   = 0;
@@ -230,18 +233,20 @@ namespace Nodus
   void Condensation::make_transformation()
   {
     std::vector<std::pair<unsigned int, NodeRow>> rows;
+    std::vector<unsigned int>                     replaced;
     unsigned int                                  n_owned = 0;
     for (unsigned int i = 0; i < nodes_.size(); ++i)
       if (const Row *const row = rows_[i].get())
       {
-        replaced_.push_back(i);
+        replaced.push_back(i);
         n_owned += i < nodes_.n_owned();
         NodeRow &blocks = rows.emplace_back(i, NodeRow()).second;
         blocks.emplace_back(nodes_.global(i), by_rows(row->own));
         for (const Coupling &other : row->others)
           blocks.emplace_back(other.node, by_rows(other.block));
       }
-    T_ = std::make_shared<const Transformation>(std::move(rows), n_owned, system_.displacement_ownership());
+    replaced_ = std::make_unique<NodeMatrixRows>(system_.bulk(), std::move(replaced));
+    T_        = std::make_shared<const Transformation>(std::move(rows), n_owned, system_.displacement_ownership());
   }
 
   void Condensation::apply_stiffness(double *const m) const
@@ -256,6 +261,8 @@ namespace Nodus
 
   void Condensation::add_springs(const double *const u, double *const f) const
   {
+    if (!has_springs_)
+      return;
     std::fill(multiplier_.begin(), multiplier_.end(), 0.);
     system_.B().add_product(u, multiplier_.data());
     apply_stiffness(multiplier_.data());
@@ -310,14 +317,17 @@ namespace Nodus
     }
 
     const double *const u_g = particular_.data();
-    system_.bulk().vmult_columns(f_.data(), u_g, replaced_);
+    replaced_->vmult_columns(f_.data(), u_g);
     system_.add_coupling(u_g, f_.data());
     add_springs(u_g, f_.data());
-    std::copy_n(g_b, multiplier_.size(), multiplier_.begin());
-    apply_stiffness(multiplier_.data());
     for (std::size_t i = 0; i < f_.size(); ++i)
       f_[i] = f_b[i] - f_[i];
-    system_.B().add_transposed_product(multiplier_.data(), f_.data());
+    if (has_springs_)
+    {
+      std::copy_n(g_b, multiplier_.size(), multiplier_.begin());
+      apply_stiffness(multiplier_.data());
+      system_.B().add_transposed_product(multiplier_.data(), f_.data());
+    }
     double *const condensed = rhs.trilinos_vector()[0];
     apply_transposed(f_.data(), condensed);
     for (const auto &[i, diagonal] : eliminated_)
@@ -333,15 +343,17 @@ namespace Nodus
       u[i] += particular_[i];
 
     // m = D (B u - g), and what is left of equilibrium goes to the constraints
-    system_.bulk().vmult_rows(f_.data(), u, replaced_);
+    replaced_->vmult(f_.data(), u);
     system_.add_coupling(u, f_.data());
     for (std::size_t i = 0; i < multiplier_.size(); ++i)
       m[i] = -g_b[i];
-    system_.B().add_product(u, m);
+    if (has_springs_)
+      system_.B().add_product(u, m);
     apply_stiffness(m);
     for (std::size_t i = 0; i < f_.size(); ++i)
       f_[i] = f_b[i] - f_[i];
-    system_.B().add_transposed_product(m, f_.data(), -1.);
+    if (has_springs_)
+      system_.B().add_transposed_product(m, f_.data(), -1.);
     std::vector<Eigen::Vector3d> force(sites_.size(), Eigen::Vector3d::Zero());
     for (unsigned int k = 0; k < sites_.size(); ++k)
     {

@@ -51,8 +51,8 @@ namespace Nodus
     constraints.T        = T_;
     constraints.diagonal = eliminated_;
     for (const Site &site : sites_)
-      if (const Matrix3 D = stiffness_along_rows(site); !D.isZero(0.))
-        constraints.springs.push_back({transformed_rows(site), by_rows(D)});
+      if (site.has_spring)
+        constraints.springs.push_back({transformed_rows(site), by_rows(stiffness_along_rows(site))});
     return constraints;
   }
 } // namespace Nodus

@@ -30,7 +30,7 @@ namespace Nodus
 
   ConstrainedMatrix::ConstrainedMatrix(const NodeMatrix &K)
       : K_nodes_(K.shared_map())
-      , nodes_(K.map())
+      , nodes_(K.shared_map())
       , pattern_(K.pattern())
       , stiffness_(K.values().begin(), K.values().end())
   {
@@ -39,7 +39,7 @@ namespace Nodus
   ConstrainedMatrix::ConstrainedMatrix(const NodeMatrix &K, Constraints constraints)
       : constraints_(std::move(constraints))
       , K_nodes_(K.shared_map())
-      , nodes_(K.map(), reached(constraints_))
+      , nodes_(std::make_shared<NodeMap>(K.map(), reached(constraints_)))
       , pattern_(K.pattern())
       , stiffness_(K.values().begin(), K.values().end())
       , replacement_(K.map().size(), none)
@@ -51,21 +51,21 @@ namespace Nodus
         replacement_[node] = T_rows_.size();
         T_rows_.emplace_back(node, to_local(row));
       }
-    const Ownership          range(forces_.size(), nodes_.communicator());
+    const Ownership          range(forces_.size(), nodes_->communicator());
     std::vector<MatrixEntry> entries;
     for (const auto &spring : constraints_.springs)
     {
       append_entries(entries, range.begin() + dim * springs_.size(), spring.row);
       springs_.push_back({to_local(spring.row), spring.D});
     }
-    R_ = std::make_unique<CouplingMatrix>(entries, range, Ownership(dim * nodes_.n_owned(), nodes_.communicator()));
+    R_ = std::make_unique<CouplingMatrix>(entries, range, Ownership(dim * nodes_->n_owned(), nodes_->communicator()));
   }
 
   ConstrainedMatrix::LocalRow ConstrainedMatrix::to_local(const NodeRow &row) const
   {
     LocalRow result;
     for (const auto &[node, block] : row)
-      result.emplace_back(nodes_.local(node), block);
+      result.emplace_back(nodes_->local(node), block);
     return result;
   }
 
@@ -74,7 +74,7 @@ namespace Nodus
     const Transformation *const T = constraints_.T.get();
     if (T)
       T->apply(x);
-    pattern_->vmult(stiffness_.data(), y, K_nodes_->with_ghosts(x));
+    pattern_->vmult(stiffness_.data(), y, x, *K_nodes_);
     if (T)
     {
       T->restore(x);
@@ -96,18 +96,18 @@ namespace Nodus
 
   std::vector<std::array<double, 9>> ConstrainedMatrix::diagonal_blocks(const NodeMatrix &K) const
   {
-    std::vector<std::array<double, 9>> diagonal(nodes_.size(), std::array<double, 9>{});
+    std::vector<std::array<double, 9>> diagonal(nodes_->size(), std::array<double, 9>{});
     const auto                         add = [&](const unsigned int node, const Block &part)
     { Eigen::Map<Block>(diagonal[node].data()) += part; };
-    for (unsigned int i = 0; i < nodes_.n_owned(); ++i)
+    for (unsigned int i = 0; i < nodes_->n_owned(); ++i)
       if (!replacement(i))
         std::copy_n(K.diagonal(i), 9, diagonal[i].begin());
 
     // T_zi^T K_zc T_ci; rows z of K that T replaces are enough, K is symmetric
-    std::vector<const double *> T_z(nodes_.size(), nullptr);
+    std::vector<const double *> T_z(nodes_->size(), nullptr);
     for (const auto &[z, row] : T_rows_)
     {
-      if (z >= nodes_.n_owned())
+      if (z >= nodes_->n_owned())
         continue;
       for (const auto &[i, block] : row)
         T_z[i] = block.data();
@@ -136,8 +136,8 @@ namespace Nodus
     for (const auto &[i, d] : constraints_.diagonal)
       diagonal[i / dim][4 * (i % dim)] += d;
     if (R_)
-      nodes_.add_from_ghosts(diagonal.data()->data() + 9 * nodes_.n_owned(), diagonal.data()->data(), 9);
-    diagonal.resize(nodes_.n_owned());
+      nodes_->add_from_ghosts(diagonal.data()->data() + 9 * nodes_->n_owned(), diagonal.data()->data(), 9);
+    diagonal.resize(nodes_->n_owned());
     return diagonal;
   }
 } // namespace Nodus

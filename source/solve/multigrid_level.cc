@@ -54,10 +54,7 @@ namespace Nodus
   {
     constexpr unsigned int n_steps = 15;
     const unsigned int     n       = residual_.size();
-    const auto             dot     = [&](const std::vector<double> &v, const std::vector<double> &w) {
-      return dealii::Utilities::MPI::sum(std::inner_product(v.begin(), v.end(), w.begin(), 0.),
-                                         A_.map().communicator());
-    };
+    // v, z, w without the factor 1 / norm until both products of a step are known: one reduction for both
     std::vector<double> previous(n, 0.), &v = residual_, &z = update_, &w = product_;
     for (unsigned int i = 0; i < n; ++i) // rough, and the same on any number of ranks
       v[i] = std::sin(12.9898 * (dim * A_.map().global(i / dim) + i % dim + 1.));
@@ -67,21 +64,22 @@ namespace Nodus
     for (unsigned int step = 0; step < n_steps; ++step)
     {
       apply_diagonal(z.data(), v.data());
-      const double norm = std::sqrt(std::max(dot(v, z), 0.));
+      A_.vmult(w.data(), z.data());
+      double products[] = {std::inner_product(v.begin(), v.end(), z.begin(), 0.),
+                           std::inner_product(w.begin(), w.end(), z.begin(), 0.)};
+      dealii::Utilities::MPI::sum(products, A_.map().communicator(), products);
+      const double norm = std::sqrt(std::max(products[0], 0.));
       if (!(norm > 1e-12 * beta))
         break;
       if (step > 0)
         beside[step - 1] = norm;
-      beta = step > 0 ? norm : 0.;
+      beta           = step > 0 ? norm : 0.;
+      diagonal[step] = products[1] / products[0];
       for (unsigned int i = 0; i < n; ++i)
       {
         v[i] /= norm;
-        z[i] /= norm;
+        w[i] = w[i] / norm - diagonal[step] * v[i] - beta * previous[i];
       }
-      A_.vmult(w.data(), z.data());
-      diagonal[step] = dot(w, z);
-      for (unsigned int i = 0; i < n; ++i)
-        w[i] -= diagonal[step] * v[i] + beta * previous[i];
       previous.swap(v);
       v.swap(w);
     }

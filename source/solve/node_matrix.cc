@@ -48,6 +48,14 @@ namespace Nodus
     ghost_values_.resize(dim * ghosts_.size());
   }
 
+  GhostExchange NodeMap::exchange_for(const std::vector<unsigned int> &nodes) const
+  {
+    std::vector<DoFIndex> ghosts;
+    for (const unsigned int i : nodes)
+      ghosts.push_back(global(i));
+    return GhostExchange::numbered_through(start_, ghosts, communicator_);
+  }
+
   Epetra_Map NodeMap::dof_map() const
   {
     return Epetra_Map(
@@ -85,12 +93,6 @@ namespace Nodus
       for (unsigned int k = 0; k < received.size(); ++k)
         result[questions[rank][k]] = received[k];
     return result;
-  }
-
-  NodeValues NodeMap::with_ghosts(const double *const owned) const
-  {
-    exchange_.fetch(owned, ghost_values_.data(), dim);
-    return {owned, ghost_values_.data(), n_owned_};
   }
 
   void NodeMatrix::reinit(std::shared_ptr<const NodeMap>   map,
@@ -136,6 +138,8 @@ namespace Nodus
       p.ghosts.push_back(p.start.back() + (std::lower_bound(row.begin(), row.end(), n_owned) - row.begin()));
       p.column.insert(p.column.end(), row.begin(), row.end());
       p.start.push_back(p.column.size());
+      if (p.ghosts.back() < p.start.back())
+        p.interface.push_back(i);
       for (std::uint32_t k = p.start[i] + 1; k < p.start[i + 1]; ++k)
         ++p.lower_start[p.column[k] + 1];
     }
@@ -190,38 +194,66 @@ namespace Nodus
     return true;
   }
 
-  template <typename Number>
-  void NodePattern::vmult(const Number *a, double *const y, const NodeValues &x) const
+  namespace
   {
-    // Blocks to be fetched ahead: the rows are too short for the hardware to do it in time. Twice as fast from memory.
-    constexpr unsigned int ahead = 128;
     // Rows of a block in vectors of four, the last of which is of the next row: x is zero there.
     typedef double Lanes __attribute__((vector_size(32)));
-    typedef Number Stored __attribute__((vector_size(4 * sizeof(Number))));
-    const auto     row = [](const Number *values)
+
+    template <typename Number>
+    Lanes load(const Number *const values)
     {
-      Stored stored;
+      typedef Number Stored __attribute__((vector_size(4 * sizeof(Number))));
+      Stored         stored;
       std::memcpy(&stored, values, sizeof(Stored));
       return __builtin_convertvector(stored, Lanes);
+    }
+
+    struct BlockRows
+    {
+      Lanes row[dim];
+
+      template <typename Number>
+      explicit BlockRows(const Number *const a)
+          : row{load(a), load(a + 3), load(a + 6)}
+      {
+      }
     };
-    const unsigned int n_owned = ghosts.size();
+  } // namespace
+
+  // Neighbours' values come while owned nodes are multiplied: ranks that are ahead in turn need not wait for each
+  // other.
+  template <typename Number>
+  void NodePattern::vmult(const Number *const a, double *const y, const double *const x, const NodeMap &nodes) const
+  {
+    nodes.start_fetch(x);
+    multiply_owned(a, y, x);
+    add_ghosts(a, y, nodes.finish_fetch());
+  }
+  template void NodePattern::vmult(const double *, double *, const double *, const NodeMap &) const;
+  template void NodePattern::vmult(const float *, double *, const double *, const NodeMap &) const;
+
+  template <typename Number>
+  void NodePattern::multiply_owned(const Number *a, double *const y, const double *const x) const
+  {
+    // Blocks to be fetched ahead: the rows are too short for the hardware to do it in time. Twice as fast from memory.
+    constexpr unsigned int ahead   = 128;
+    const unsigned int     n_owned = ghosts.size();
     std::fill_n(y, dim * n_owned, 0.);
     for (unsigned int i = 0; i < n_owned; ++i)
     {
-      const double *const xi = x.owned + 3 * i;
+      const double *const xi = x + 3 * i;
       const Lanes         x0 = xi[0] - Lanes{}, x1 = xi[1] - Lanes{}, x2 = xi[2] - Lanes{};
       Lanes               sum[3] = {};
-      const auto          add    = [&](const double *const values, const std::uint32_t j, const bool both)
+      const auto          add    = [&](const std::uint32_t j, const bool both)
       {
         __builtin_prefetch(a + 9 * ahead);
-        const Lanes xj = {values[3 * j], values[3 * j + 1], values[3 * j + 2], 0.};
-        const Lanes a0 = row(a), a1 = row(a + 3), a2 = row(a + 6);
-        sum[0] += a0 * xj;
-        sum[1] += a1 * xj;
-        sum[2] += a2 * xj;
+        const Lanes     xj = {x[3 * j], x[3 * j + 1], x[3 * j + 2], 0.};
+        const BlockRows block(a);
+        for (unsigned int c = 0; c < dim; ++c)
+          sum[c] += block.row[c] * xj;
         if (both)
         {
-          const Lanes part = a0 * x0 + a1 * x1 + a2 * x2;
+          const Lanes part = block.row[0] * x0 + block.row[1] * x1 + block.row[2] * x2;
           y[3 * j] += part[0];
           y[3 * j + 1] += part[1];
           y[3 * j + 2] += part[2];
@@ -229,54 +261,33 @@ namespace Nodus
         a += 9;
       };
       std::uint32_t k = start[i];
-      add(x.owned, column[k++], false);
+      add(column[k++], false);
       for (; k < ghosts[i]; ++k)
-        add(x.owned, column[k], true);
-      for (; k < start[i + 1]; ++k)
-        add(x.ghosts, column[k] - n_owned, false);
+        add(column[k], true);
+      a += 9 * std::size_t(start[i + 1] - k);
       for (unsigned int c = 0; c < dim; ++c)
         y[3 * i + c] += sum[c][0] + sum[c][1] + sum[c][2];
     }
   }
-  template void NodePattern::vmult(const double *, double *, const NodeValues &) const;
-  template void NodePattern::vmult(const float *, double *, const NodeValues &) const;
 
-  namespace
+  template <typename Number>
+  void NodePattern::add_ghosts(const Number *const a, double *const y, const double *const x_ghosts) const
   {
-    void add_product(double *y, const double *a, const bool transposed, const double *x)
+    const unsigned int n_owned = ghosts.size();
+    for (const std::uint32_t i : interface)
     {
-      for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int d = 0; d < dim; ++d)
-          y[c] += (transposed ? a[dim * d + c] : a[dim * c + d]) * x[d];
-    }
-  } // namespace
-
-  void NodeMatrix::vmult_columns(double *y, const double *x_owned, const std::vector<unsigned int> &nodes) const
-  {
-    const NodeValues x = map_->with_ghosts(x_owned);
-    std::fill_n(y, dim * map_->n_owned(), 0.);
-    const NodePattern &p = *pattern_;
-    for (const unsigned int j : nodes)
-    {
-      for (std::uint32_t k = p.lower_start[j]; k < p.lower_start[j + 1]; ++k)
-        add_product(y + dim * p.lower[k].row, &values_[9 * std::size_t(p.lower[k].block)], false, x[j]);
-      if (j < map_->n_owned())
-        for (std::uint32_t k = p.start[j]; k < p.ghosts[j]; ++k)
-          add_product(y + dim * p.column[k], &values_[9 * std::size_t(k)], true, x[j]);
-    }
-  }
-
-  void NodeMatrix::vmult_rows(double *y, const double *x_owned, const std::vector<unsigned int> &nodes) const
-  {
-    const NodeValues x = map_->with_ghosts(x_owned);
-    for (const unsigned int i : nodes)
-      if (i < map_->n_owned())
+      Lanes sum[3] = {};
+      for (std::uint32_t k = ghosts[i]; k < start[i + 1]; ++k)
       {
-        std::fill_n(y + dim * i, dim, 0.);
-        for_row(i,
-                [&](const unsigned int j, const double *block, const bool transposed)
-                { add_product(y + dim * i, block, transposed, x[j]); });
+        const double *const xj    = x_ghosts + 3 * (column[k] - n_owned);
+        const Lanes         value = {xj[0], xj[1], xj[2], 0.};
+        const BlockRows     block(a + 9 * std::size_t(k));
+        for (unsigned int c = 0; c < dim; ++c)
+          sum[c] += block.row[c] * value;
       }
+      for (unsigned int c = 0; c < dim; ++c)
+        y[3 * i + c] += sum[c][0] + sum[c][1] + sum[c][2];
+    }
   }
 
   std::vector<double> NodeMatrix::diagonal() const
@@ -313,8 +324,8 @@ namespace Nodus
   std::size_t NodeMatrix::memory_consumption() const
   {
     const NodePattern &p = *pattern_;
-    return sizeof(std::uint32_t) *
-               (p.start.size() + p.ghosts.size() + p.column.size() + p.lower_start.size() + 2 * p.lower.size()) +
+    return sizeof(std::uint32_t) * (p.start.size() + p.ghosts.size() + p.column.size() + p.lower_start.size() +
+                                    2 * p.lower.size() + p.interface.size()) +
            sizeof(double) * values_.size();
   }
 } // namespace Nodus

@@ -50,6 +50,9 @@ namespace Nodus
     void make_tentative(std::vector<double> modes);
     void smooth(const NodeMatrix &K, const std::vector<std::array<double, 9>> &D_inverse, double omega);
 
+    /// Calls f(row) for those without columns of other ranks.
+    template <typename Function>
+    void for_interior_rows(const Function &f) const;
     bool owned(const DoFIndex aggregate) const
     {
       return aggregate >= first_ && aggregate < first_ + n_aggregates_;
@@ -72,6 +75,7 @@ namespace Nodus
     // cycle reads; P^T A P belongs to the rounded P.
     std::vector<std::uint32_t>  start_, column_;
     std::vector<float>          blocks_;
+    std::vector<std::uint32_t>  interface_; ///< rows with columns of other ranks
     GhostExchange               exchange_;
     mutable std::vector<double> ghost_values_; ///< six per ghost
   };

@@ -2,6 +2,7 @@
 #define nodus_solve_condensation_h
 
 #include <nodus/solve/constrained_matrix.h>
+#include <nodus/solve/node_matrix_rows.h>
 #include <nodus/solve/saddle_point_operator.h>
 
 #include <deal.II/lac/trilinos_vector.h>
@@ -66,16 +67,17 @@ namespace Nodus
     };
     struct Site
     {
-      unsigned int          node;                ///< local, owned
-      Matrix3               turn;                ///< columns: combinations of the multipliers
-      Eigen::Vector3d       flexibility_inverse; ///< 1/c of each combination, 0 for constraints
-      unsigned int          n_constraints = 0;   ///< the first directions of the basis
-      unsigned int          n_directions  = 0;   ///< with the stiff ones, which stay unknowns: jumps
-      unsigned int          combination[3];      ///< that gives each direction
-      Matrix3               basis;               ///< columns
-      double                diagonal = 0.;       ///< mean diagonal stiffness of the node
-      bool                  coupled  = false;    ///< to constraints of other slave nodes
-      std::vector<Coupling> rows;                ///< turned rows of B, the own node first
+      unsigned int          node;                  ///< local, owned
+      Matrix3               turn;                  ///< columns: combinations of the multipliers
+      Eigen::Vector3d       flexibility_inverse;   ///< 1/c of each combination, 0 for constraints
+      bool                  has_spring    = false; ///< a compliant row that is not zero
+      unsigned int          n_constraints = 0;     ///< the first directions of the basis
+      unsigned int          n_directions  = 0;     ///< with the stiff ones, which stay unknowns: jumps
+      unsigned int          combination[3];        ///< that gives each direction
+      Matrix3               basis;                 ///< columns
+      double                diagonal = 0.;         ///< mean diagonal stiffness of the node
+      bool                  coupled  = false;      ///< to constraints of other slave nodes
+      std::vector<Coupling> rows;                  ///< turned rows of B, the own node first
     };
     /// Row of T: u = own y + sum of block y of others.
     struct Row
@@ -107,10 +109,11 @@ namespace Nodus
 
     const SaddlePointOperator                   &system_;
     const NodeMap                               &nodes_;
-    std::vector<Site>                            sites_; ///< of the owned slave nodes
-    std::vector<std::unique_ptr<Row>>            rows_;  ///< by local node; null where T is the identity
+    std::vector<Site>                            sites_;               ///< of the owned slave nodes
+    bool                                         has_springs_ = false; ///< on any rank
+    std::vector<std::unique_ptr<Row>>            rows_;                ///< by local node; null where T is the identity
     std::unique_ptr<ConstraintCluster>           cluster_;
-    std::vector<unsigned int>                    replaced_;   ///< local nodes whose rows are not null
+    std::unique_ptr<const NodeMatrixRows>        replaced_;   ///< K at nodes where T is not the identity
     std::vector<std::pair<unsigned int, double>> eliminated_; ///< owned unknowns without meaning, and a diagonal
     std::shared_ptr<const Transformation>        T_;
     std::vector<double>                          particular_; ///< u_g

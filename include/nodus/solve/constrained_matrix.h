@@ -37,7 +37,7 @@ namespace Nodus
     /// Local numbers of the nodes: those of K, then ghosts that T and R reach.
     const NodeMap &map() const
     {
-      return nodes_;
+      return *nodes_;
     }
     /// y = A x over the owned degrees of freedom; meanwhile @p x is T x. Collective.
     void vmult(double *y, double *x) const;
@@ -79,7 +79,7 @@ namespace Nodus
 
     const Constraints                              constraints_;
     const std::shared_ptr<const NodeMap>           K_nodes_;
-    const NodeMap                                  nodes_;
+    const std::shared_ptr<const NodeMap>           nodes_;
     const std::shared_ptr<const NodePattern>       pattern_;
     const std::vector<float>                       stiffness_;
     std::vector<unsigned int>                      replacement_; ///< by local node of K: index into T_rows_, or none

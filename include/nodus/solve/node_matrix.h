@@ -69,12 +69,28 @@ namespace Nodus
       return std::upper_bound(start_.begin(), start_.end(), node) - start_.begin() - 1;
     }
     /// Fetches the values at ghosts, to stay until the next call. Collective.
-    NodeValues with_ghosts(const double *owned) const;
+    NodeValues with_ghosts(const double *owned) const
+    {
+      start_fetch(owned);
+      return {owned, finish_fetch(), n_owned_};
+    }
+    /// with_ghosts() in two steps, for work in between; the second returns the values at ghosts. Collective.
+    void start_fetch(const double *const owned) const
+    {
+      exchange_.start_fetch(owned, dim);
+    }
+    const double *finish_fetch() const
+    {
+      exchange_.finish_fetch(ghost_values_.data(), dim);
+      return ghost_values_.data();
+    }
     /// Adds the values at ghosts, @p n_components each, to those of their owners. Collective.
     void add_from_ghosts(const double *ghosts, double *owned, const unsigned int n_components) const
     {
       exchange_.add(ghosts, owned, n_components);
     }
+    /// Exchange for the ghosts @p nodes alone, local numbers. Collective.
+    GhostExchange exchange_for(const std::vector<unsigned int> &nodes) const;
     /// Numbers for each ghost, in the order of the local numbers: @p append adds those of an owned node to the end.
     /// Collective.
     std::vector<std::vector<double>>
@@ -116,10 +132,17 @@ namespace Nodus
     std::vector<std::uint32_t> column;
     std::vector<std::uint32_t> lower_start; ///< of the columns, those of ghosts included
     std::vector<Lower>         lower;       ///< blocks of a column in lower rows
+    std::vector<std::uint32_t> interface;   ///< rows with ghosts
 
-    /// y = A x for @p values of 9 per block, row by row, and 3 more.
+    /// y = A x for @p values of 9 per block, row by row, and 3 more; x and y of the owned nodes. Collective.
     template <typename Number>
-    void vmult(const Number *values, double *y, const NodeValues &x) const;
+    void vmult(const Number *values, double *y, const double *x, const NodeMap &nodes) const;
+
+  private:
+    template <typename Number>
+    void multiply_owned(const Number *values, double *y, const double *x) const;
+    template <typename Number>
+    void add_ghosts(const Number *values, double *y, const double *x_ghosts) const;
   };
 
   /// Symmetric matrix of 3x3 blocks between displacement nodes.
@@ -208,12 +231,8 @@ namespace Nodus
     /// y = A x, over the owned degrees of freedom. Collective.
     void vmult(double *y, const double *x) const
     {
-      pattern_->vmult(values_.data(), y, map_->with_ghosts(x));
+      pattern_->vmult(values_.data(), y, x, *map_);
     }
-    /// y = A x where x vanishes but at the local nodes @p nodes, those among the ghosts included. Collective.
-    void vmult_columns(double *y, const double *x, const std::vector<unsigned int> &nodes) const;
-    /// y = A x at the owned ones among @p nodes; other values of y are not touched. Collective.
-    void vmult_rows(double *y, const double *x, const std::vector<unsigned int> &nodes) const;
     /// Diagonal of the owned degrees of freedom.
     std::vector<double> diagonal() const;
     /// Largest absolute value on the diagonal, over all ranks. Collective.
