@@ -2,6 +2,7 @@
 #include <nodus/contact/site_values.h>
 #include <nodus/contact_problem_implementation.h>
 #include <nodus/mesh/sides.h>
+#include <nodus/owned_values.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -164,13 +165,15 @@ namespace Nodus
   NewtonProblem::Norms
   ContactProblem::Implementation::assemble_contact(const dealii::AffineConstraints<double> &constraints)
   {
-    const auto timer = profile.time(Phase::contact_assembly);
-    Norms      norms;
-    Vector     prescribed(surfaces->layout().owned[0], communicator);
-    for (const auto i : surfaces->layout().owned[0])
+    const auto  timer = profile.time(Phase::contact_assembly);
+    Norms       norms;
+    const auto &owned = surfaces->layout().owned[0];
+    Vector      prescribed(contact_force); // its map: a new one would be collective
+    prescribed = 0.;
+    const OwnedValues given(prescribed);
+    for (const auto i : owned)
       if (constraints.is_constrained(i))
-        prescribed(i) = constraints.get_inhomogeneity(i);
-    prescribed.compress(dealii::VectorOperation::insert);
+        given(i) = constraints.get_inhomogeneity(i);
     surfaces->gather(prescribed, state.prescribed);
 
     residual      = contact->assemble(state, system, merged.threshold);
@@ -183,13 +186,13 @@ namespace Nodus
     if (stiffness_scale == 0.)
       stiffness_scale = system.bulk.largest_diagonal();
     // The last term is round-off: without it a body that only translates would be measured against its own noise.
-    const double scale = std::max({internal.linfty_norm(),
-                                   external.linfty_norm(),
-                                   contact_force.linfty_norm(),
-                                   relative_force_floor * stiffness_scale * length});
-    for (const auto i : surfaces->layout().owned[0])
-      out_of_balance(i) = constraints.is_constrained(i) ? 0. : internal(i) - external(i) + contact_force(i);
-    out_of_balance.compress(dealii::VectorOperation::insert);
+    const double      scale = std::max({internal.linfty_norm(),
+                                        external.linfty_norm(),
+                                        contact_force.linfty_norm(),
+                                        relative_force_floor * stiffness_scale * length});
+    const OwnedValues out(out_of_balance), in(internal), ex(external), on(contact_force);
+    for (const auto i : owned)
+      out(i) = constraints.is_constrained(i) ? 0. : in(i)-ex(i) + on(i);
     force_scale      = scale;
     norms.force      = scale > 0. ? out_of_balance.linfty_norm() / scale : 0.;
     norms.contact    = contact->norm(residual, length);

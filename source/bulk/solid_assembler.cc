@@ -331,7 +331,8 @@ namespace Nodus
   {
     const auto set = [&](Vector &v, const std::vector<double> &values)
     {
-      v.reinit(dof_handler.locally_owned_dofs(), dof_handler.get_communicator());
+      if (v.locally_owned_elements() != dof_handler.locally_owned_dofs())
+        v.reinit(dof_handler.locally_owned_dofs(), dof_handler.get_communicator());
       std::copy_n(values.begin(), dim * nodes->n_owned(), v.trilinos_vector()[0]);
     };
     const auto set_all = [&]

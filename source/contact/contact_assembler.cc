@@ -1,4 +1,5 @@
 #include <nodus/contact/contact_assembler.h>
+#include <nodus/owned_values.h>
 #include <nodus/wait_for_all.h>
 
 #include <deal.II/base/mpi.h>
@@ -395,23 +396,23 @@ namespace Nodus
       }
     }
 
-    system.rhs.block(1) = 0.;
-    system.rhs.block(2) = 0.;
-    for (unsigned int k = 0; k < n; ++k)
+    wait_for_all(layout.communicator);
+    surfaces_.slave_exchange().sum(law_rhs, 3);
+    const OwnedValues normal(system.rhs.block(1)), tangential(system.rhs.block(2));
+    for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
     {
-      const DoFIndex      multiplier = surfaces_.multiplier(k);
-      const double *const row        = law_rhs.data() + 3 * k;
-      system.rhs.block(1)(multiplier) += row[0];
+      const DoFIndex multiplier = surfaces_.multiplier(k);
+      normal(multiplier)        = law_rhs[3 * k];
       for (unsigned int i = 0; i < 2; ++i)
-        system.rhs.block(2)(2 * multiplier + i) += row[1 + i];
+        tangential(2 * multiplier + i) = law_rhs[3 * k + 1 + i];
     }
+    std::vector<Vector3> forces(surfaces_.nodes().size());
     for (unsigned int s = 0; s < n_sites; ++s)
       for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
         for (unsigned int c = 0; c < dim; ++c)
-          if (jump_rhs[3 * s + c] != 0. && !surfaces_.fixed(e->node, c))
-            system.rhs.block(0)(surfaces_.nodes()[e->node].dofs[c]) += e->weight * jump_rhs[3 * s + c];
-    wait_for_all(layout.communicator);
-    system.rhs.compress(dealii::VectorOperation::add);
+          if (!surfaces_.fixed(e->node, c))
+            forces[e->node][c] += e->weight * jump_rhs[3 * s + c];
+    surfaces_.add(forces, system.rhs.block(0));
     const auto add_resultant = [&](std::vector<double> &sum, const RigidShare &share, const Vector3 &force)
     {
       const Vector3 moment = dealii::cross_product_3d(share.arm, force);
@@ -456,12 +457,12 @@ namespace Nodus
 
   void ContactAssembler::add_forces(const ContactResidual &residual, Vector &force) const
   {
+    std::vector<Vector3> forces(surfaces_.nodes().size());
     for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
       if (surfaces_.is_owned(s))
         for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
-          for (unsigned int c = 0; c < dim; ++c)
-            force(surfaces_.nodes()[e->node].dofs[c]) += e->weight * residual.jump[s][c];
-    force.compress(dealii::VectorOperation::add);
+          forces[e->node] += e->weight * residual.jump[s];
+    surfaces_.add(forces, force);
   }
 
   double ContactAssembler::norm(const ContactResidual &residual, const double length) const

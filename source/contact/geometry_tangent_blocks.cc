@@ -1,4 +1,5 @@
 #include <nodus/contact/geometry_tangent.h>
+#include <nodus/owned_values.h>
 #include <nodus/wait_for_all.h>
 
 #include <algorithm>
@@ -70,8 +71,11 @@ namespace Nodus
     const auto         &nodes  = surfaces_.nodes();
     const std::uint64_t size   = nodes.size();
     system.variation.reserve(system.variation.row.size() + dim * dim * sum.force.size() + dim * sum.gap.size());
-    const auto is_inner = [&](const DoFIndex index) { return index < layout.size(); };
-    const auto is_rigid = [&](const unsigned int node)
+    // what prescribed displacements add to the right-hand side
+    std::vector<Vector3> forces(nodes.size());
+    std::vector<double>  gaps(surfaces_.slave_nodes().size(), 0.);
+    const auto           is_inner = [&](const DoFIndex index) { return index < layout.size(); };
+    const auto           is_rigid = [&](const unsigned int node)
     { return surfaces_.rigid_body(node) != dealii::numbers::invalid_unsigned_int; };
     const auto add_force = [&](const unsigned int row, const unsigned int column, const Matrix3 &value)
     {
@@ -88,7 +92,7 @@ namespace Nodus
                                        {
                                          const double missing = row_part * value[i][j] * state.prescribed[column][j];
                                          if (is_inner(row_index))
-                                           system.rhs.block(0)(row_index) -= missing;
+                                           forces[row][i] -= missing;
                                          else
                                            system.border_rhs[row_index - layout.size()] -= missing;
                                        }
@@ -106,20 +110,21 @@ namespace Nodus
                                      }
                                    });
     };
-    const auto add_gap = [&](const DoFIndex multiplier, const unsigned int column, const Vector3 &value)
+    const auto add_gap = [&](const unsigned int slave, const unsigned int column, const Vector3 &value)
     {
       for (unsigned int j = 0; j < dim; ++j)
       {
         if (surfaces_.fixed(column, j) && !is_rigid(column))
-          system.rhs.block(1)(multiplier) -= value[j] * state.prescribed[column][j];
+          gaps[slave] -= value[j] * state.prescribed[column][j];
         else if (value[j] != 0.)
           surfaces_.for_each_unknown(column,
                                      j,
                                      state.x[column],
                                      state.centre,
-                                     [&](const DoFIndex index, const double part) {
+                                     [&](const DoFIndex index, const double part)
+                                     {
                                        (is_inner(index) ? system.variation : system.border)
-                                           .add(layout.lambda(multiplier), index, part * value[j]);
+                                           .add(layout.lambda(surfaces_.multiplier(slave)), index, part * value[j]);
                                      });
       }
     };
@@ -136,12 +141,14 @@ namespace Nodus
     for (const auto &[key, value] : sum.gap)
       surfaces_.expand(key % size,
                        1.,
-                       [&, multiplier = surfaces_.multiplier(key / size), &value = value](const unsigned int column,
-                                                                                          const double       part)
-                       { add_gap(multiplier, column, part * value); });
+                       [&, slave = key / size, &value = value](const unsigned int column, const double part)
+                       { add_gap(slave, column, part * value); });
     wait_for_all(surfaces_.layout().communicator);
-    system.rhs.block(0).compress(dealii::VectorOperation::add);
-    system.rhs.block(1).compress(dealii::VectorOperation::add);
+    surfaces_.add(forces, system.rhs.block(0));
+    surfaces_.slave_exchange().sum(gaps);
+    const OwnedValues rhs(system.rhs.block(1));
+    for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
+      rhs(surfaces_.multiplier(k)) += gaps[k];
     system.symmetric = false;
   }
 } // namespace Nodus

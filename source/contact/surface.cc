@@ -2,6 +2,8 @@
 #include <nodus/contact/master_request.h>
 #include <nodus/contact/surface.h>
 #include <nodus/mesh/region.h>
+#include <nodus/owned_values.h>
+#include <nodus/solve/ownership.h>
 #include <nodus/some_to_some.h>
 
 #include <deal.II/base/mpi.h>
@@ -267,15 +269,31 @@ namespace Nodus
     }
     link_followers(records);
 
-    std::vector<DoFIndex> dofs;
-    for (const auto &node : nodes_)
-      dofs.insert(dofs.end(), node.dofs.begin(), node.dofs.end());
-    std::sort(dofs.begin(), dofs.end());
-    dealii::IndexSet surface_dofs(layout_.n_u);
-    surface_dofs.add_indices(dofs.begin(), dofs.end());
-    surface_dofs.compress();
-    ghosted_.reinit(layout_.owned[0], surface_dofs, communicator_);
+    number_nodes();
     gather_fixed();
+  }
+
+  /// Places of the nodes among the values of gather() and add().
+  void ContactSurfaces::number_nodes()
+  {
+    const Ownership owned(static_cast<unsigned int>(layout_.owned[0].n_elements() / dim), communicator_);
+    n_owned_nodes_                 = owned.end() - owned.begin();
+    const auto            is_owned = [&](const DoFIndex node) { return node >= owned.begin() && node < owned.end(); };
+    std::vector<DoFIndex> ghosts;
+    for (const SurfaceNode &node : nodes_)
+      if (const DoFIndex number = node.dofs[0] / dim; !is_owned(number))
+        ghosts.push_back(number);
+    std::sort(ghosts.begin(), ghosts.end());
+    place_.clear();
+    for (const SurfaceNode &node : nodes_)
+    {
+      const DoFIndex number = node.dofs[0] / dim;
+      place_.push_back(is_owned(number) ? number - owned.begin()
+                                        : n_owned_nodes_ + (std::lower_bound(ghosts.begin(), ghosts.end(), number) -
+                                                            ghosts.begin()));
+    }
+    node_exchange_ = GhostExchange::numbered_through(owned.start(), ghosts, communicator_);
+    ghost_values_.resize(dim * ghosts.size());
   }
 
   Point ContactSurfaces::site_position(const unsigned int site) const
@@ -292,18 +310,35 @@ namespace Nodus
 
   void ContactSurfaces::gather(const Vector &v, std::vector<Vector3> &nodal_values) const
   {
-    ghosted_ = v;
+    const double *const owned = v.trilinos_vector()[0];
+    node_exchange_.fetch(owned, ghost_values_.data(), dim);
     nodal_values.resize(nodes_.size());
     for (unsigned int i = 0; i < nodes_.size(); ++i)
+    {
+      const double *const values = place_[i] < n_owned_nodes_
+                                       ? owned + dim * place_[i]
+                                       : ghost_values_.data() + dim * (place_[i] - n_owned_nodes_);
+      std::copy_n(values, dim, nodal_values[i].begin_raw());
+    }
+  }
+
+  void ContactSurfaces::add(const std::vector<Vector3> &nodal_values, Vector &v) const
+  {
+    double *const owned = v.trilinos_vector()[0];
+    for (unsigned int i = 0; i < nodes_.size(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
-        nodal_values[i][c] = ghosted_(nodes_[i].dofs[c]);
+        if (place_[i] < n_owned_nodes_)
+          owned[dim * place_[i] + c] += nodal_values[i][c];
+        else
+          ghost_values_[dim * (place_[i] - n_owned_nodes_) + c] = nodal_values[i][c];
+    node_exchange_.add(ghost_values_.data(), owned, dim);
   }
 
   void ContactSurfaces::set_fixed(const dealii::AffineConstraints<double> &constraints)
   {
+    const OwnedValues mask(fixed_mask_);
     for (const auto i : layout_.owned[0])
-      fixed_mask_(i) = is_prescribed(constraints, i) ? 1. : 0.;
-    fixed_mask_.compress(dealii::VectorOperation::insert);
+      mask(i) = is_prescribed(constraints, i) ? 1. : 0.;
     gather_fixed();
   }
 

@@ -239,6 +239,8 @@ namespace Nodus
 
     /// Values of a displacement-like vector (fully distributed) at all local nodes. Collective.
     void gather(const Vector &v, std::vector<Vector3> &nodal_values) const;
+    /// Adds what all ranks have for their local nodes to such a vector. Collective.
+    void add(const std::vector<Vector3> &nodal_values, Vector &v) const;
 
     /// Which components of which nodes are prescribed, those of hanging nodes when all that they follow are; whenever
     /// the constraints have changed. Collective.
@@ -303,6 +305,7 @@ namespace Nodus
     void        add_nodes(const FaceRecord &record);
     void        link_followers(const std::vector<FaceRecord> &records);
     SurfaceFace make_face(const FaceRecord &record) const;
+    void        number_nodes();
     void        gather_fixed();
     void        find_rigid_nodes();
 
@@ -327,7 +330,11 @@ namespace Nodus
     std::vector<std::array<bool, dim>>         fixed_;
     std::vector<unsigned int>                  rigid_number_, rigid_body_; ///< by body; by node, empty without any
     BlockLayout                                layout_;
-    mutable Vector                             ghosted_; ///< for gather()
+    // for gather() and add():
+    std::vector<unsigned int>   place_;             ///< of each node: local number as for NodeMap, owned nodes first
+    unsigned int                n_owned_nodes_ = 0; ///< of the mesh
+    GhostExchange               node_exchange_;
+    mutable std::vector<double> ghost_values_;
   };
 } // namespace Nodus
 
