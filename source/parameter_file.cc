@@ -47,8 +47,9 @@ namespace Nodus
     /// list.
     char separator(const std::string &description)
     {
-      std::smatch match;
-      if (std::regex_match(description, match, std::regex(".* separated by <(.)>\\]")))
+      static const std::regex pattern(".* separated by <(.)>\\]");
+      std::smatch             match;
+      if (std::regex_match(description, match, pattern))
         return match[1].str()[0];
       return description.compare(0, 6, "[List ") == 0 ? ',' : '\0';
     }
@@ -56,19 +57,21 @@ namespace Nodus
     /// deal.II's "[Double 0...MAX_DOUBLE (inclusive)]" and the like in words.
     std::string in_words(const std::string &description)
     {
+      static const std::regex list("\\[List of <(.*)> of length (\\d+)\\.\\.\\.(\\d+) .*\\]"),
+          selection("\\[Selection (.*?) ?\\]"), range(".* (\\S+)\\.\\.\\.(\\S+) \\(inclusive\\)\\]"), bar("\\|");
       std::smatch match;
-      if (std::regex_match(description, match, std::regex("\\[List of <(.*)> of length (\\d+)\\.\\.\\.(\\d+) .*\\]")))
+      if (std::regex_match(description, match, list))
         return (match[2] == match[3] ? match[2].str() + " entries" : "a list") + " separated by '" +
                separator(description) + "'" + (match[1] == "[Anything]" ? "" : ", each " + in_words(match[1]));
-      if (std::regex_match(description, match, std::regex("\\[Selection (.*?) ?\\]")))
-        return "one of: " + std::regex_replace(match[1].str(), std::regex("\\|"), ", ");
+      if (std::regex_match(description, match, selection))
+        return "one of: " + std::regex_replace(match[1].str(), bar, ", ");
       if (description == "[Bool]")
         return "true or false";
       if (description == "[Anything]")
         return "text";
 
       std::string words = description.compare(0, 8, "[Integer") == 0 ? "a whole number" : "a number";
-      if (std::regex_match(description, match, std::regex(".* (\\S+)\\.\\.\\.(\\S+) \\(inclusive\\)\\]")))
+      if (std::regex_match(description, match, range))
       {
         const bool lower = match[1] != "-MAX_DOUBLE" && match[1] != "-2147483648";
         const bool upper = match[2] != "MAX_DOUBLE" && match[2] != "2147483647";

@@ -4,8 +4,9 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <map>
+#include <numeric>
+#include <utility>
 
 namespace Nodus
 {
@@ -45,6 +46,28 @@ namespace Nodus
     return result;
   }
 
+  /// By row and column: into rows first, which are short.
+  void Ownership::sort(std::vector<MatrixEntry> &entries) const
+  {
+    const auto by_place = [](const MatrixEntry &a, const MatrixEntry &b)
+    { return a.row < b.row || (a.row == b.row && a.column < b.column); };
+    if (std::is_sorted(entries.begin(), entries.end(), by_place))
+      return;
+    std::vector<std::size_t> start(end() - begin() + 1, 0);
+    for (const MatrixEntry &e : entries)
+      ++start[e.row - begin() + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<std::size_t> next(start);
+    std::vector<MatrixEntry> sorted(entries.size());
+    for (const MatrixEntry &e : entries)
+      sorted[next[e.row - begin()]++] = e;
+    for (std::size_t i = 0; i + 1 < start.size(); ++i)
+      std::sort(sorted.begin() + start[i],
+                sorted.begin() + start[i + 1],
+                [](const MatrixEntry &a, const MatrixEntry &b) { return a.column < b.column; });
+    entries = std::move(sorted);
+  }
+
   std::vector<MatrixEntry> Ownership::exchange(std::vector<MatrixEntry> entries) const
   {
     const auto first = std::partition(
@@ -56,11 +79,7 @@ namespace Nodus
     for (const auto &[source, received] : some_to_some(communicator_, outgoing))
       entries.insert(entries.end(), received.begin(), received.end());
 
-    static_assert(sizeof(DoFIndex) == 4, "deal.II with indices of 64 bits: compare rows and columns one by one");
-    const auto place  = [](const MatrixEntry &e) { return static_cast<std::uint64_t>(e.row) << 32 | e.column; };
-    const auto before = [&](const MatrixEntry &a, const MatrixEntry &b) { return place(a) < place(b); };
-    if (!std::is_sorted(entries.begin(), entries.end(), before))
-      std::sort(entries.begin(), entries.end(), before);
+    sort(entries);
     std::size_t n = 0;
     for (const MatrixEntry &e : entries)
       if (n > 0 && entries[n - 1].row == e.row && entries[n - 1].column == e.column)

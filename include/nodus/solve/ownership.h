@@ -61,6 +61,8 @@ namespace Nodus
     std::vector<MatrixEntry> exchange(std::vector<MatrixEntry> entries) const;
 
   private:
+    void sort(std::vector<MatrixEntry> &entries) const;
+
     std::vector<DoFIndex> start_;
     MPI_Comm              communicator_;
     unsigned int          rank_;
