@@ -12,6 +12,8 @@ namespace Nodus
   {
     for (unsigned int row = 0; row < nodes.size(); ++row) // the others are zero
       std::fill_n(force.begin() + row * stride, nodes.size(), Matrix3());
+    for (const unsigned int n : nodes)
+      place[n] = none;
     nodes.clear();
     slaves.clear();
     offsets.clear();
@@ -20,9 +22,11 @@ namespace Nodus
 
   unsigned int GeometryTangent::Blocks::node(const unsigned int n)
   {
-    const unsigned int i = std::find(nodes.begin(), nodes.end(), n) - nodes.begin();
-    if (i < nodes.size())
-      return i;
+    if (n >= place.size())
+      place.resize(n + 1, none);
+    if (place[n] != none)
+      return place[n];
+    const unsigned int i = place[n] = nodes.size();
     nodes.push_back(n);
     if (nodes.size() > stride)
     {

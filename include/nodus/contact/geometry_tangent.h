@@ -68,7 +68,10 @@ namespace Nodus
     /// node).
     struct Blocks
     {
+      static constexpr unsigned int none = static_cast<unsigned int>(-1);
+
       std::vector<unsigned int> nodes, slaves;
+      std::vector<unsigned int> place; ///< of a surface node in nodes, or none
       unsigned int              stride = 0;
       std::vector<Matrix3>      force; ///< row * stride + column
       std::vector<Vector3>      gap;   ///< slave * stride + column
