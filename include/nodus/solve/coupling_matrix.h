@@ -16,7 +16,7 @@ namespace Nodus
   class CouplingMatrix
   {
   public:
-    /// @param entries of owned rows, sorted by row and column, each place once. Collective.
+    /// @param entries of owned rows, sorted by row, each place once. Collective.
     CouplingMatrix(const std::vector<MatrixEntry> &entries, const Ownership &range, const Ownership &domain);
 
     /// y += factor A x. Collective.
