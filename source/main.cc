@@ -1,7 +1,6 @@
-#include <nodus/contact_problem.h>
-#include <nodus/memory.h>
-#include <nodus/parameters.h>
-#include <nodus/signals.h>
+#include <nodus/base/signals.h>
+#include <nodus/parameters/parameters.h>
+#include <nodus/run/contact_problem.h>
 
 #include <deal.II/base/config.h>
 #include <deal.II/base/mpi.h>
@@ -156,8 +155,7 @@ int main(int argc, char **argv)
 {
   // One thread per rank: parallelism is MPI's, and sums do not depend on scheduling.
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  Nodus::give_back_memory();
-  const bool first_rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  const bool                               first_rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   try
   {
     const CommandLine command = parse(std::vector<std::string>(argv + 1, argv + argc));
@@ -171,7 +169,6 @@ int main(int argc, char **argv)
     {
       Nodus::Signals::install();
       solve(Nodus::Parameters::read(command.file, command.overrides), command);
-      Nodus::give_back_memory(); // the end touches all libraries once more
     }
     return 0;
   }

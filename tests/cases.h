@@ -3,8 +3,8 @@
 
 // Parameters of small cases built in code, and comparison with reference values.
 
-#include <nodus/contact_problem.h>
-#include <nodus/parameters.h>
+#include <nodus/parameters/parameters.h>
+#include <nodus/run/contact_problem.h>
 
 #include <cmath>
 #include <cstdlib>

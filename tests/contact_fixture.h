@@ -5,8 +5,8 @@
 
 #include "cases.h"
 
-#include <nodus/contact/contact_assembler.h>
-#include <nodus/mesh/bodies.h>
+#include "contact/contact_assembler.h"
+#include "mesh/bodies.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe_q.h>

@@ -1,7 +1,7 @@
-#include <nodus/bulk/boundary_conditions.h>
-#include <nodus/bulk/rigid_displacement.h>
-#include <nodus/bulk/throw_everywhere.h>
-#include <nodus/mesh/expression.h>
+#include "bulk/boundary_conditions.h"
+#include "bulk/rigid_displacement.h"
+#include "parallel/throw_everywhere.h"
+#include "parameters/expression.h"
 
 #include <deal.II/base/function_parser.h>
 #include <deal.II/dofs/dof_tools.h>

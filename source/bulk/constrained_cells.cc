@@ -1,5 +1,5 @@
-#include <nodus/bulk/constrained_cells.h>
-#include <nodus/some_to_some.h>
+#include "bulk/constrained_cells.h"
+#include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/grid/grid_tools.h>
@@ -16,9 +16,9 @@ namespace Nodus
     constexpr int tag = 4712;
 
     /// Adds the upper blocks of a group where they are stored.
-    void scatter(const std::vector<NodeMatrix::Position> &positions, const double *K, NodeMatrix &tangent)
+    void scatter(const std::vector<BlockCsrMatrix::Position> &positions, const double *K, BlockCsrMatrix &tangent)
     {
-      for (const NodeMatrix::Position position : positions)
+      for (const BlockCsrMatrix::Position position : positions)
       {
         if (position.stored())
         {
@@ -113,7 +113,7 @@ namespace Nodus
     }
     std::map<unsigned int, Neighbour> neighbours;
     std::vector<DoFIndex>             foreign;
-    for (const auto &[other, groups] : some_to_some(communicator_, outgoing))
+    for (const auto &[other, groups] : sparse_exchange(communicator_, outgoing))
       for (const auto &group : groups)
       {
         neighbours[other].cells.emplace_back();
@@ -170,7 +170,7 @@ namespace Nodus
       std::for_each(neighbour.cells.begin(), neighbour.cells.end(), add);
   }
 
-  void ConstrainedCells::find_positions(const NodeMatrix &tangent)
+  void ConstrainedCells::find_positions(const BlockCsrMatrix &tangent)
   {
     const auto find = [&](Cell &cell)
     {
@@ -245,7 +245,7 @@ namespace Nodus
                              const std::vector<char>   &is_prescribed,
                              const std::vector<double> &prescribed,
                              const std::vector<double> &stiffness,
-                             NodeMatrix                *tangent,
+                             BlockCsrMatrix            *tangent,
                              const NodalForces         &sums)
   {
     const Cell &cell = cells_[index];
@@ -287,7 +287,7 @@ namespace Nodus
     }
   }
 
-  void ConstrainedCells::exchange(const bool failed, NodeMatrix *tangent, const NodalForces &sums)
+  void ConstrainedCells::exchange(const bool failed, BlockCsrMatrix *tangent, const NodalForces &sums)
   {
     if (!exist())
       return;

@@ -1,5 +1,5 @@
-#include <nodus/bulk/hex_kernel.h>
-#include <nodus/bulk/mean_dilatation_kernel.h>
+#include "bulk/hex_kernel.h"
+#include "bulk/mean_dilatation_kernel.h"
 
 namespace Nodus
 {

@@ -1,4 +1,4 @@
-#include <nodus/bulk/hardening.h>
+#include "bulk/hardening.h"
 
 #include <algorithm>
 #include <cmath>

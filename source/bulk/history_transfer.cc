@@ -1,4 +1,4 @@
-#include <nodus/bulk/history_transfer.h>
+#include "bulk/history_transfer.h"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/distributed/cell_data_transfer.templates.h>

@@ -1,4 +1,4 @@
-#include <nodus/bulk/j2_plasticity.h>
+#include "bulk/j2_plasticity.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <nodus/bulk/linear_elastic.h>
+#include "bulk/linear_elastic.h"
 
 #include <cmath>
 

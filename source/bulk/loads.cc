@@ -1,5 +1,5 @@
-#include <nodus/bulk/face_table.h>
-#include <nodus/bulk/loads.h>
+#include "bulk/loads.h"
+#include "bulk/face_table.h"
 
 #include <deal.II/fe/fe_values.h>
 

@@ -1,10 +1,10 @@
-#include <nodus/bulk/j2_plasticity.h>
-#include <nodus/bulk/linear_elastic.h>
-#include <nodus/bulk/material.h>
-#include <nodus/bulk/mooney_rivlin.h>
-#include <nodus/bulk/neo_hookean.h>
-#include <nodus/bulk/ogden.h>
-#include <nodus/bulk/st_venant_kirchhoff.h>
+#include "bulk/material.h"
+#include "bulk/j2_plasticity.h"
+#include "bulk/linear_elastic.h"
+#include "bulk/mooney_rivlin.h"
+#include "bulk/neo_hookean.h"
+#include "bulk/ogden.h"
+#include "bulk/st_venant_kirchhoff.h"
 
 namespace Nodus
 {

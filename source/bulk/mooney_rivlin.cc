@@ -1,4 +1,4 @@
-#include <nodus/bulk/mooney_rivlin.h>
+#include "bulk/mooney_rivlin.h"
 
 #include <cmath>
 

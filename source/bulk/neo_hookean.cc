@@ -1,4 +1,4 @@
-#include <nodus/bulk/neo_hookean.h>
+#include "bulk/neo_hookean.h"
 
 #include <cmath>
 

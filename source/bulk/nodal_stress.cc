@@ -1,5 +1,5 @@
-#include <nodus/bulk/nodal_stress.h>
-#include <nodus/mesh/hanging_nodes.h>
+#include "bulk/nodal_stress.h"
+#include "mesh/hanging_nodes.h"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>

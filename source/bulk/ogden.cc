@@ -1,4 +1,4 @@
-#include <nodus/bulk/ogden.h>
+#include "bulk/ogden.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <nodus/bulk/principal_law.h>
+#include "bulk/principal_law.h"
 
 #include <cmath>
 #include <limits>

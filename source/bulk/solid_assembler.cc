@@ -1,6 +1,6 @@
-#include <nodus/bulk/solid_assembler_scratch.h>
-#include <nodus/bulk/throw_everywhere.h>
-#include <nodus/wait_for_all.h>
+#include "bulk/solid_assembler_scratch.h"
+#include "parallel/throw_everywhere.h"
+#include "parallel/wait_for_all.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe_values.h>
@@ -138,7 +138,7 @@ namespace Nodus
     }
   }
 
-  void SolidAssembler::Scratch::make_positions(NodeMatrix &tangent)
+  void SolidAssembler::Scratch::make_positions(BlockCsrMatrix &tangent)
   {
     std::vector<unsigned int> group_nodes;
     std::vector<std::size_t>  group_end;
@@ -159,7 +159,7 @@ namespace Nodus
       for (unsigned int a = 0; a < n_nodes; ++a)
         for (unsigned int b = a; b < n_nodes; ++b)
           positions.push_back(is_constrained(c)
-                                  ? NodeMatrix::Position()
+                                  ? BlockCsrMatrix::Position()
                                   : tangent.position(cell_nodes[c * n_nodes + a], cell_nodes[c * n_nodes + b]));
   }
 
@@ -205,10 +205,10 @@ namespace Nodus
   }
 
   /// The blocks come from memory while the kernel computes.
-  void SolidAssembler::Scratch::prefetch(const Batch &batch, NodeMatrix &tangent) const
+  void SolidAssembler::Scratch::prefetch(const Batch &batch, BlockCsrMatrix &tangent) const
   {
-    const std::size_t           n_pairs  = n_nodes * (n_nodes + 1) / 2;
-    const NodeMatrix::Position *position = positions.data() + batch.first * n_pairs;
+    const std::size_t               n_pairs  = n_nodes * (n_nodes + 1) / 2;
+    const BlockCsrMatrix::Position *position = positions.data() + batch.first * n_pairs;
     for (std::size_t k = 0; k < batch.size * n_pairs; ++k, ++position)
       if (position->stored())
         __builtin_prefetch(tangent.block(position->block()), 1);
@@ -237,7 +237,8 @@ namespace Nodus
       }
   }
 
-  void SolidAssembler::Scratch::add_constrained(const unsigned int cell, const unsigned int lane, NodeMatrix *tangent)
+  void
+  SolidAssembler::Scratch::add_constrained(const unsigned int cell, const unsigned int lane, BlockCsrMatrix *tangent)
   {
     for (unsigned int part = 0; part < 2; ++part)
       cell_forces[part].assign(dim * n_nodes, 0.);
@@ -261,11 +262,11 @@ namespace Nodus
                     {nodal_internal, nodal_external, nodal_rhs});
   }
 
-  void SolidAssembler::Scratch::scatter(const unsigned int cell, const unsigned int lane, NodeMatrix &tangent) const
+  void SolidAssembler::Scratch::scatter(const unsigned int cell, const unsigned int lane, BlockCsrMatrix &tangent) const
   {
-    const std::size_t           n_pairs  = n_nodes * (n_nodes + 1) / 2;
-    const NodeMatrix::Position *position = positions.data() + cell * n_pairs;
-    const double               *K        = reinterpret_cast<const double *>(batch_stiffness.data()) + lane;
+    const std::size_t               n_pairs  = n_nodes * (n_nodes + 1) / 2;
+    const BlockCsrMatrix::Position *position = positions.data() + cell * n_pairs;
+    const double                   *K        = reinterpret_cast<const double *>(batch_stiffness.data()) + lane;
     for (unsigned int pair = 0; pair < n_pairs; ++pair, ++position, K += dim * dim * n_lanes)
     {
       if (!position->stored())
@@ -305,7 +306,7 @@ namespace Nodus
   bool SolidAssembler::Scratch::is_last(const Vector                    &u,
                                         const double                     t,
                                         const AffineConstraints<double> *constraints,
-                                        NodeMatrix                      *tangent)
+                                        BlockCsrMatrix                  *tangent)
   {
     std::vector<double> values(dofs.size()), conditions(1, t);
     u.extract_subvector_to(dofs.begin(), dofs.end(), values.begin());
@@ -326,7 +327,7 @@ namespace Nodus
                                       Vector                          &internal,
                                       Vector                          &external,
                                       const AffineConstraints<double> *constraints,
-                                      NodeMatrix                      *tangent,
+                                      BlockCsrMatrix                  *tangent,
                                       Vector                          *rhs)
   {
     const auto set = [&](Vector &v, const std::vector<double> &values)
@@ -442,7 +443,7 @@ namespace Nodus
   void SolidAssembler::tangent(const Vector                    &u,
                                const double                     t,
                                const AffineConstraints<double> &constraints,
-                               NodeMatrix                      &tangent,
+                               BlockCsrMatrix                  &tangent,
                                Vector                          &rhs,
                                Vector                          &internal,
                                Vector                          &external) const
@@ -450,7 +451,7 @@ namespace Nodus
     scratch_->sweep(u, t, internal, external, &constraints, &tangent, &rhs);
   }
 
-  void SolidAssembler::make_sparsity(NodeMatrix &tangent) const
+  void SolidAssembler::make_sparsity(BlockCsrMatrix &tangent) const
   {
     scratch_->make_positions(tangent);
   }

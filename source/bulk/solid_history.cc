@@ -1,5 +1,5 @@
-#include <nodus/bulk/solid_assembler_scratch.h>
-#include <nodus/bulk/throw_everywhere.h>
+#include "bulk/solid_assembler_scratch.h"
+#include "parallel/throw_everywhere.h"
 
 #include <deal.II/grid/grid_tools.h>
 

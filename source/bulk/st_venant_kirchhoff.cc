@@ -1,4 +1,4 @@
-#include <nodus/bulk/st_venant_kirchhoff.h>
+#include "bulk/st_venant_kirchhoff.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include <nodus/bulk/stress_error.h>
+#include "bulk/stress_error.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>

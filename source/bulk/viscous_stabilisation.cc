@@ -1,5 +1,5 @@
-#include <nodus/bulk/viscous_stabilisation.h>
-#include <nodus/mesh/hanging_nodes.h>
+#include "bulk/viscous_stabilisation.h"
+#include "mesh/hanging_nodes.h"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
@@ -60,7 +60,7 @@ namespace Nodus
 
   void ViscousStabilisation::add(const Vector                            &moved,
                                  const dealii::AffineConstraints<double> &constraints,
-                                 NodeMatrix                              &matrix,
+                                 BlockCsrMatrix                          &matrix,
                                  Vector                                  &force) const
   {
     if (rate_ == 0.)

@@ -1,7 +1,7 @@
-#include <nodus/contact/averaged_jump.h>
-#include <nodus/contact/face_rule.h>
-#include <nodus/contact/segments.h>
-#include <nodus/some_to_some.h>
+#include "contact/averaged_jump.h"
+#include "contact/face_rule.h"
+#include "contact/segments.h"
+#include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -364,7 +364,7 @@ namespace Nodus
         outgoing[owner].push_back(mine[i]);
     }
     mine.clear();
-    for (auto &[other, part] : some_to_some(communicator, outgoing))
+    for (auto &[other, part] : sparse_exchange(communicator, outgoing))
       mine.insert(mine.end(), part.begin(), part.end());
     std::sort(mine.begin(),
               mine.end(),

@@ -1,5 +1,5 @@
-#include <nodus/contact/surface.h>
-#include <nodus/mesh/region.h>
+#include "contact/surface.h"
+#include "mesh/region.h"
 
 #include <memory>
 

@@ -1,6 +1,6 @@
-#include <nodus/contact/contact_assembler.h>
-#include <nodus/owned_values.h>
-#include <nodus/wait_for_all.h>
+#include "contact/contact_assembler.h"
+#include "parallel/owned_values.h"
+#include "parallel/wait_for_all.h"
 
 #include <deal.II/base/mpi.h>
 

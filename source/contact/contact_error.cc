@@ -1,5 +1,5 @@
-#include <nodus/contact/contact_error.h>
-#include <nodus/some_to_some.h>
+#include "contact/contact_error.h"
+#include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -36,7 +36,7 @@ namespace Nodus
       void deliver(const Function &f)
       {
         std::map<std::pair<unsigned int, unsigned int>, std::vector<double>> values; // sums in an order of their own
-        for (const auto &[rank, marks] : some_to_some(surfaces_.layout().communicator, outgoing_))
+        for (const auto &[rank, marks] : sparse_exchange(surfaces_.layout().communicator, outgoing_))
           for (const auto &[face, value] : marks)
             values[face].push_back(value);
         for (auto &[face, list] : values)

@@ -1,5 +1,5 @@
-#include <nodus/contact/contact_geometry.h>
-#include <nodus/contact/master_request.h>
+#include "contact/contact_geometry.h"
+#include "contact/master_request.h"
 
 #include <deal.II/numerics/rtree.h>
 

@@ -1,6 +1,6 @@
-#include <nodus/contact/face_directory.h>
-#include <nodus/mesh/region.h>
-#include <nodus/some_to_some.h>
+#include "contact/face_directory.h"
+#include "mesh/region.h"
+#include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe.h>
@@ -118,15 +118,15 @@ namespace Nodus
           questions[owner(follower.dof)].emplace_back(i, follower.dof);
       }
     std::set<NodeKey> present;
-    for (const auto &[other, keys] : some_to_some(communicator, nodes))
+    for (const auto &[other, keys] : sparse_exchange(communicator, nodes))
       present.insert(keys.begin(), keys.end());
     std::map<unsigned int, std::vector<NodeKey>> answers;
-    for (const auto &[other, keys] : some_to_some(communicator, questions))
+    for (const auto &[other, keys] : sparse_exchange(communicator, questions))
       for (const NodeKey &key : keys)
         if (present.count(key) == 1)
           answers[other].push_back(key);
     std::set<NodeKey> on_side;
-    for (const auto &[other, keys] : some_to_some(communicator, answers))
+    for (const auto &[other, keys] : sparse_exchange(communicator, answers))
       on_side.insert(keys.begin(), keys.end());
     for (unsigned int i = 0; i < own_.size(); ++i)
       for (FaceRecord &face : own_[i])
@@ -173,7 +173,7 @@ namespace Nodus
         for (const unsigned int r : ranks)
           outgoing[r].push_back(face);
       }
-    for (const auto &[other, faces] : some_to_some(communicator, outgoing))
+    for (const auto &[other, faces] : sparse_exchange(communicator, outgoing))
       at_own_nodes_.insert(at_own_nodes_.end(), faces.begin(), faces.end());
     for (unsigned int f = 0; f < at_own_nodes_.size(); ++f)
     {
@@ -195,7 +195,7 @@ namespace Nodus
         nodes[owner(dof)].insert({2 * face.pair + face.side, dof});
     for (const auto &[other, keys] : nodes)
       questions[other].assign(keys.begin(), keys.end());
-    for (const auto &[other, keys] : some_to_some(communicator, questions))
+    for (const auto &[other, keys] : sparse_exchange(communicator, questions))
     {
       std::set<unsigned int> indices;
       for (const NodeKey &key : keys)
@@ -205,7 +205,7 @@ namespace Nodus
         if (at_own_nodes_[i].rank != other) // who has its own faces already
           answers[other].push_back(at_own_nodes_[i]);
     }
-    for (const auto &[other, found] : some_to_some(communicator, answers))
+    for (const auto &[other, found] : sparse_exchange(communicator, answers))
       faces.insert(faces.end(), found.begin(), found.end());
     make_unique(faces);
   }

@@ -1,4 +1,4 @@
-#include <nodus/contact/face_rule.h>
+#include "contact/face_rule.h"
 
 #include <deal.II/base/quadrature_lib.h>
 

@@ -1,5 +1,5 @@
-#include <nodus/contact/friction_limit.h>
-#include <nodus/mesh/expression.h>
+#include "contact/friction_limit.h"
+#include "parameters/expression.h"
 
 #include <deal.II/base/function_parser.h>
 

@@ -1,5 +1,5 @@
-#include <nodus/contact/status.h>
-#include <nodus/output/complete_file.h>
+#include "base/complete_file.h"
+#include "contact/status.h"
 
 #include <deal.II/base/mpi.h>
 

@@ -1,4 +1,4 @@
-#include <nodus/contact/geometry_tangent.h>
+#include "contact/geometry_tangent.h"
 
 #include <algorithm>
 

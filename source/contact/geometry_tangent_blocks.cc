@@ -1,6 +1,6 @@
-#include <nodus/contact/geometry_tangent.h>
-#include <nodus/owned_values.h>
-#include <nodus/wait_for_all.h>
+#include "contact/geometry_tangent.h"
+#include "parallel/owned_values.h"
+#include "parallel/wait_for_all.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include <nodus/contact/jump_operator.h>
+#include "contact/jump_operator.h"
 
 #include <Eigen/Dense>
 

@@ -1,5 +1,5 @@
-#include <nodus/contact/master_request.h>
-#include <nodus/some_to_some.h>
+#include "contact/master_request.h"
+#include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/numerics/rtree.h>
@@ -262,10 +262,10 @@ namespace Nodus
           asked[r].push_back(i);
         }
     std::map<unsigned int, std::vector<double>> answers;
-    for (const auto &[other, list] : some_to_some(communicator, questions))
+    for (const auto &[other, list] : sparse_exchange(communicator, questions))
       for (const Question &question : list)
         answers[other].push_back(own[question.pair].nearest(question));
-    for (const auto &[other, list] : some_to_some(communicator, answers))
+    for (const auto &[other, list] : sparse_exchange(communicator, answers))
       for (unsigned int i = 0; i < list.size(); ++i)
       {
         double &ball = mine[asked[other][i]].ball;
@@ -280,7 +280,7 @@ namespace Nodus
         if (within(r, question, std::max(question.ball, (1. + sweep_slope) * question.sweep)))
           questions[r].push_back(question);
     std::map<unsigned int, std::vector<std::vector<unsigned int>>> result;
-    for (const auto &[other, list] : some_to_some(communicator, questions))
+    for (const auto &[other, list] : sparse_exchange(communicator, questions))
     {
       std::vector<std::set<unsigned int>> wanted(pairs.size());
       for (const Question &question : list)

@@ -1,4 +1,4 @@
-#include <nodus/contact/pairing.h>
+#include "contact/pairing.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <nodus/contact/segments.h>
+#include "contact/segments.h"
 
 #include <deal.II/base/quadrature_lib.h>
 

@@ -1,4 +1,4 @@
-#include <nodus/contact/site_values.h>
+#include "contact/site_values.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
-#include <nodus/contact/pairing.h>
-#include <nodus/contact/status.h>
+#include "contact/status.h"
+#include "contact/pairing.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -101,7 +101,7 @@ namespace Nodus
            pairs_[pair].weights == ContactPairParameters::Weights::consistent && limits_[pair].exists();
   }
 
-  bool Status::can_hold_in_the_mean() const
+  bool Status::can_regularise() const
   {
     for (unsigned int p = 0; p < pairs_.size(); ++p)
       if (can_project(p) || can_lump(p))
@@ -113,13 +113,13 @@ namespace Nodus
   {
     std::vector<bool> result;
     for (unsigned int p = 0; p < pairs_.size(); ++p)
-      result.push_back(in_the_mean_ && can_lump(p));
+      result.push_back(regularised_ && can_lump(p));
     return result;
   }
 
   void Status::begin_increment()
   {
-    in_the_mean_ = false;
+    regularised_ = false;
     ledger_.assign(ledger_.size(), StatusLedger());
   }
 
@@ -260,7 +260,7 @@ namespace Nodus
       ledger_[k].last = found[i];
     }
     result.changes = dealii::Utilities::MPI::sum<unsigned int>(result.sites.size(), communicator);
-    if (result.changes > 0 || in_the_mean_)
+    if (result.changes > 0 || regularised_)
     {
       surfaces_.site_exchange().update(now_.contact);
       surfaces_.site_exchange().update(now_.stick);
@@ -282,10 +282,10 @@ namespace Nodus
     const auto met = std::find(differs.begin(), differs.end(), 0u);
     if (met == differs.end())
       return;
-    update.period   = met - differs.begin() + 1;
-    update.cycles   = merged_ && ++returns_ > tolerated_returns;
-    update.to_means = !in_the_mean_ && (update.cycles || !merged_) && can_hold_in_the_mean();
-    freezes_        = freezes_ || (one_at_a_time_ && !update.to_means);
+    update.period         = met - differs.begin() + 1;
+    update.cycles         = merged_ && ++returns_ > tolerated_returns;
+    update.to_regularised = !regularised_ && (update.cycles || !merged_) && can_regularise();
+    freezes_              = freezes_ || (one_at_a_time_ && !update.to_regularised);
     std::vector<unsigned int> cycling;
     for (unsigned int back = 0; back < update.period; ++back)
     {
@@ -301,9 +301,9 @@ namespace Nodus
           }
         }
     }
-    if (update.to_means)
+    if (update.to_regularised)
     {
-      hold_in_the_mean();
+      regularise();
       update.cycles = false;
       returns_      = 0;
     }
@@ -311,7 +311,7 @@ namespace Nodus
       update.frozen = freeze(cycling);
     else if (!merged_ && !one_at_a_time_)
       seen_.assign(now_.contact.size(), {{-1., -1., -1.}});
-    one_at_a_time_ = !merged_ && !freezes_ && !update.to_means;
+    one_at_a_time_ = !merged_ && !freezes_ && !update.to_regularised;
     visited_.assign(1, code());
   }
 

@@ -1,10 +1,10 @@
-#include <nodus/bulk/throw_everywhere.h>
-#include <nodus/contact/master_request.h>
-#include <nodus/contact/surface.h>
-#include <nodus/mesh/region.h>
-#include <nodus/owned_values.h>
-#include <nodus/solve/ownership.h>
-#include <nodus/some_to_some.h>
+#include "contact/surface.h"
+#include "contact/master_request.h"
+#include "mesh/region.h"
+#include "parallel/owned_values.h"
+#include "parallel/ownership.h"
+#include "parallel/sparse_exchange.h"
+#include "parallel/throw_everywhere.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe.h>
@@ -249,7 +249,7 @@ namespace Nodus
     std::vector<FaceRecord> records;
     for (unsigned int p = 0; p < n_pairs(); ++p)
       records.insert(records.end(), directory_.own(p, master_side).begin(), directory_.own(p, master_side).end());
-    for (const auto &[other, faces] : some_to_some(communicator_, outgoing))
+    for (const auto &[other, faces] : sparse_exchange(communicator_, outgoing))
       records.insert(records.end(), faces.begin(), faces.end());
     directory_.add_layer(records);
     take_master_faces(records);

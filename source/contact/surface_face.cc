@@ -1,4 +1,4 @@
-#include <nodus/contact/surface_face.h>
+#include "contact/surface_face.h"
 
 namespace Nodus
 {

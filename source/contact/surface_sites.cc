@@ -1,5 +1,5 @@
-#include <nodus/contact/face_rule.h>
-#include <nodus/contact/surface.h>
+#include "contact/face_rule.h"
+#include "contact/surface.h"
 
 #include <deal.II/base/mpi.h>
 

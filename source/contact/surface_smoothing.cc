@@ -1,4 +1,4 @@
-#include <nodus/contact/surface_geometry.h>
+#include "contact/surface_geometry.h"
 
 #include <deal.II/base/symmetric_tensor.h>
 

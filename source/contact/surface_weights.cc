@@ -1,5 +1,5 @@
-#include <nodus/contact/averaged_jump.h>
-#include <nodus/contact/surface_weights.h>
+#include "contact/surface_weights.h"
+#include "contact/averaged_jump.h"
 
 #include <deal.II/base/quadrature_lib.h>
 

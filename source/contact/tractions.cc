@@ -1,4 +1,4 @@
-#include <nodus/contact/tractions.h>
+#include "contact/tractions.h"
 
 #include <deal.II/base/mpi.h>
 

@@ -1,7 +1,7 @@
-#include <nodus/mesh/bodies.h>
-#include <nodus/mesh/expression.h>
-#include <nodus/mesh/mesh_share.h>
-#include <nodus/wait_for_all.h>
+#include "mesh/bodies.h"
+#include "mesh/mesh_share.h"
+#include "parallel/wait_for_all.h"
+#include "parameters/expression.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/mpi.templates.h>

@@ -1,4 +1,4 @@
-#include <nodus/mesh/curved_geometry.h>
+#include "mesh/curved_geometry.h"
 
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/quadrature_lib.h>

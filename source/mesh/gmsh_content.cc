@@ -1,4 +1,4 @@
-#include <nodus/mesh/gmsh_content.h>
+#include "mesh/gmsh_content.h"
 
 #include <algorithm>
 #include <charconv>

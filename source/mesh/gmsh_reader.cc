@@ -1,5 +1,5 @@
-#include <nodus/mesh/gmsh_content.h>
-#include <nodus/mesh/gmsh_reader.h>
+#include "mesh/gmsh_reader.h"
+#include "mesh/gmsh_content.h"
 
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/grid/grid_tools.h>

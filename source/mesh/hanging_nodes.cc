@@ -1,5 +1,5 @@
-#include <nodus/mesh/hanging_nodes.h>
-#include <nodus/some_to_some.h>
+#include "mesh/hanging_nodes.h"
+#include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -48,14 +48,14 @@ namespace Nodus
     for (const DoFIndex dof : relevant)
       if (dof % dim == 0 && !owned.is_element(dof))
         questions[owner(dof / dim)].push_back(dof / dim);
-    for (const auto &[rank, received] : some_to_some(communicator, found))
+    for (const auto &[rank, received] : sparse_exchange(communicator, found))
       for (const auto &[node, masters] : received)
         masters_.emplace(node, masters);
-    for (const auto &[rank, nodes] : some_to_some(communicator, questions))
+    for (const auto &[rank, nodes] : sparse_exchange(communicator, questions))
       for (const DoFIndex node : nodes)
         if (const Masters *const known = masters(node))
           answers[rank].emplace_back(node, *known);
-    for (const auto &[rank, received] : some_to_some(communicator, answers))
+    for (const auto &[rank, received] : sparse_exchange(communicator, answers))
       for (const auto &[node, masters] : received)
         masters_[node] = masters;
   }

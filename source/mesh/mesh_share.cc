@@ -1,6 +1,6 @@
-#include <nodus/mesh/mesh_share.h>
-#include <nodus/output/complete_file.h>
-#include <nodus/wait_for_all.h>
+#include "mesh/mesh_share.h"
+#include "base/complete_file.h"
+#include "parallel/wait_for_all.h"
 
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/mpi.h>

@@ -1,7 +1,7 @@
-#include <nodus/mesh/bodies.h>
-#include <nodus/mesh/expression.h>
-#include <nodus/mesh/gmsh_reader.h>
-#include <nodus/mesh/mesh_share.h>
+#include "mesh/bodies.h"
+#include "mesh/gmsh_reader.h"
+#include "mesh/mesh_share.h"
+#include "parameters/expression.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>

@@ -1,4 +1,4 @@
-#include <nodus/mesh/refinement.h>
+#include "mesh/refinement.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/distributed/grid_refinement.h>

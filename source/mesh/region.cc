@@ -1,5 +1,5 @@
-#include <nodus/mesh/expression.h>
-#include <nodus/mesh/region.h>
+#include "mesh/region.h"
+#include "parameters/expression.h"
 
 #include <set>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include <nodus/mesh/sides.h>
+#include "mesh/sides.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>

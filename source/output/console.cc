@@ -1,4 +1,4 @@
-#include <nodus/output/console.h>
+#include "output/console.h"
 
 #include <cstdio>
 #include <ostream>

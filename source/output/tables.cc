@@ -1,5 +1,5 @@
-#include <nodus/output/complete_file.h>
-#include <nodus/output/tables.h>
+#include "output/tables.h"
+#include "base/complete_file.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>

@@ -1,6 +1,6 @@
-#include <nodus/bulk/nodal_stress.h>
-#include <nodus/output/complete_file.h>
-#include <nodus/output/vtu.h>
+#include "output/vtu.h"
+#include "base/complete_file.h"
+#include "bulk/nodal_stress.h"
 
 #include <deal.II/base/data_out_base.h>
 #include <deal.II/base/quadrature_lib.h>

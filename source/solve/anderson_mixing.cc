@@ -1,5 +1,5 @@
-#include <nodus/solve/anderson_mixing.h>
-#include <nodus/solve/least_combination.h>
+#include "solve/anderson_mixing.h"
+#include "solve/least_combination.h"
 
 namespace Nodus
 {

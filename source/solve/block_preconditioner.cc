@@ -1,4 +1,4 @@
-#include <nodus/solve/block_preconditioner.h>
+#include "solve/block_preconditioner.h"
 
 #include <Eigen/Dense>
 

@@ -1,7 +1,7 @@
-#include <nodus/solve/block_preconditioner.h>
-#include <nodus/solve/block_solver.h>
-#include <nodus/solve/left_gmres.h>
-#include <nodus/solve/saddle_point_operator.h>
+#include "solve/block_solver.h"
+#include "solve/block_preconditioner.h"
+#include "solve/left_gmres.h"
+#include "solve/saddle_point_operator.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <nodus/solve/bordered_system.h>
+#include "solve/bordered_system.h"
 
 #include <deal.II/base/mpi.h>
 

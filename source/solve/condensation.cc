@@ -1,5 +1,5 @@
-#include <nodus/solve/condensation.h>
-#include <nodus/solve/constraint_cluster.h>
+#include "solve/condensation.h"
+#include "solve/constraint_cluster.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -92,7 +92,7 @@ namespace Nodus
   /// displacements, and what is left.
   void Condensation::classify(Site &site, const Matrix3 &C) const
   {
-    const NodeMatrix &K = system_.bulk();
+    const BlockCsrMatrix &K = system_.bulk();
     for (unsigned int d = 0; d < dim; ++d)
       site.diagonal += std::abs(K.diagonal(site.node)[4 * d]) / dim;
     const Matrix3 &own = site.rows.front().block;
@@ -245,7 +245,7 @@ namespace Nodus
         for (const Coupling &other : row->others)
           blocks.emplace_back(other.node, by_rows(other.block));
       }
-    replaced_ = std::make_unique<NodeMatrixRows>(system_.bulk(), std::move(replaced));
+    replaced_ = std::make_unique<BlockCsrRows>(system_.bulk(), std::move(replaced));
     T_        = std::make_shared<const Transformation>(std::move(rows), n_owned, system_.displacement_ownership());
   }
 

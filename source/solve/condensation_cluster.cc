@@ -1,5 +1,5 @@
-#include <nodus/solve/condensation.h>
-#include <nodus/solve/constraint_cluster.h>
+#include "solve/condensation.h"
+#include "solve/constraint_cluster.h"
 
 #include <deal.II/base/mpi.h>
 

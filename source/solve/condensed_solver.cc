@@ -1,7 +1,7 @@
-#include <nodus/solve/block_solver.h>
-#include <nodus/solve/condensation.h>
-#include <nodus/solve/condensed_solver.h>
-#include <nodus/solve/left_gmres.h>
+#include "solve/condensed_solver.h"
+#include "solve/block_solver.h"
+#include "solve/condensation.h"
+#include "solve/left_gmres.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/solver_cg.h>

@@ -1,4 +1,4 @@
-#include <nodus/solve/constrained_matrix.h>
+#include "solve/constrained_matrix.h"
 
 #include <Eigen/Core>
 
@@ -28,7 +28,7 @@ namespace Nodus
     }
   } // namespace
 
-  ConstrainedMatrix::ConstrainedMatrix(const NodeMatrix &K)
+  ConstrainedMatrix::ConstrainedMatrix(const BlockCsrMatrix &K)
       : K_nodes_(K.shared_map())
       , nodes_(K.shared_map())
       , pattern_(K.pattern())
@@ -36,7 +36,7 @@ namespace Nodus
   {
   }
 
-  ConstrainedMatrix::ConstrainedMatrix(const NodeMatrix &K, Constraints constraints)
+  ConstrainedMatrix::ConstrainedMatrix(const BlockCsrMatrix &K, Constraints constraints)
       : constraints_(std::move(constraints))
       , K_nodes_(K.shared_map())
       , nodes_(std::make_shared<NodeMap>(K.map(), reached(constraints_)))
@@ -94,7 +94,7 @@ namespace Nodus
       y[i] = d * x[i];
   }
 
-  std::vector<std::array<double, 9>> ConstrainedMatrix::diagonal_blocks(const NodeMatrix &K) const
+  std::vector<std::array<double, 9>> ConstrainedMatrix::diagonal_blocks(const BlockCsrMatrix &K) const
   {
     std::vector<std::array<double, 9>> diagonal(nodes_->size(), std::array<double, 9>{});
     const auto                         add = [&](const unsigned int node, const Block &part)

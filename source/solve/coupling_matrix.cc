@@ -1,4 +1,4 @@
-#include <nodus/solve/coupling_matrix.h>
+#include "solve/coupling_matrix.h"
 
 #include <deal.II/base/mpi.h>
 

@@ -1,4 +1,4 @@
-#include <nodus/solve/direct_solver.h>
+#include "solve/direct_solver.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -145,8 +145,8 @@ namespace Nodus
     // All entries in sequence, those of one place apart.
     const auto for_entries = [&](const auto &f)
     {
-      const NodeMatrix &bulk  = system.bulk;
-      const NodeMap    &nodes = bulk.map();
+      const BlockCsrMatrix &bulk  = system.bulk;
+      const NodeMap        &nodes = bulk.map();
       for (unsigned int r = 0; r < nodes.n_owned(); ++r)
         bulk.for_row(r,
                      [&](const unsigned int c, const double *block, const bool transposed)

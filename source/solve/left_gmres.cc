@@ -1,4 +1,4 @@
-#include <nodus/solve/left_gmres.h>
+#include "solve/left_gmres.h"
 
 #include <deal.II/base/mpi.h>
 

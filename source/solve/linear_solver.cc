@@ -1,7 +1,7 @@
-#include <nodus/solve/block_solver.h>
-#include <nodus/solve/condensed_solver.h>
-#include <nodus/solve/direct_solver.h>
-#include <nodus/solve/linear_solver.h>
+#include "solve/linear_solver.h"
+#include "solve/block_solver.h"
+#include "solve/condensed_solver.h"
+#include "solve/direct_solver.h"
 
 namespace Nodus
 {

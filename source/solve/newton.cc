@@ -1,4 +1,4 @@
-#include <nodus/solve/newton.h>
+#include "solve/newton.h"
 
 #include <deal.II/lac/trilinos_parallel_block_vector.h>
 

@@ -1,4 +1,4 @@
-#include <nodus/solve/saddle_point_operator.h>
+#include "solve/saddle_point_operator.h"
 
 #include <deal.II/base/mpi.h>
 

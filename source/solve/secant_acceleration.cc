@@ -1,5 +1,5 @@
-#include <nodus/solve/least_combination.h>
-#include <nodus/solve/secant_acceleration.h>
+#include "solve/secant_acceleration.h"
+#include "solve/least_combination.h"
 
 #include <algorithm>
 #include <cmath>

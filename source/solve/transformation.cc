@@ -1,4 +1,4 @@
-#include <nodus/solve/transformation.h>
+#include "solve/transformation.h"
 
 #include <algorithm>
 #include <utility>

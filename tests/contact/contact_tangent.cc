@@ -96,7 +96,7 @@ int main(int argc, char **argv)
       }
 
       if (name == "integration point in the mean")
-        fixture.status->hold_in_the_mean();
+        fixture.status->regularise();
       fixture.assemble();
       const auto   K         = fixture.matrix();
       const double K_largest = K.linfty_norm();

@@ -3,7 +3,7 @@
 
 #include "../cases.h"
 
-#include <nodus/output/diagnosis.h>
+#include "output/diagnosis/diagnosis.h"
 
 #include <deal.II/base/mpi.h>
 

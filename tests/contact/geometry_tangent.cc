@@ -4,7 +4,7 @@
 // rigid masters in closed form, with hanging nodes on both surfaces too. On smoothed surfaces and averaged jumps, what
 // is left out (geometry_tangent.h) stays small against what is gained.
 
-#include <nodus/contact/geometry_tangent.h>
+#include "contact/geometry_tangent.h"
 
 #include "../contact_fixture.h"
 

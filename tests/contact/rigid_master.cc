@@ -4,7 +4,7 @@
 // - on a plane that turns under them: the moment of friction; tied to it: the rigid motion of the plane, without force;
 // - shells pressed on by cylinders and spheres inside and outside: the pressures of Lame.
 
-#include <nodus/signals.h>
+#include <nodus/base/signals.h>
 
 #include "../cases.h"
 

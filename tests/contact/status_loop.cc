@@ -2,7 +2,7 @@
 // opened in this loop and closes again slips: with stick on closing, stick that pulls the node open would cycle; so
 // does one that closes farther away than friction can hold: with friction mu and augmentation factor a, beyond mu d /
 // a. One that cycles is frozen where it contradicts its status least (open, by 7 * 0.01 of the largest pressure, not
-// 0.3), and an integration point that cycles holds its laws in the mean: friction contradicts its status no more.
+// 0.3), and an integration point that cycles has the regularised law: friction contradicts its status no more.
 
 #include "../contact_fixture.h"
 
@@ -119,9 +119,9 @@ int main(int argc, char **argv)
     mean.assign(s, true, true, -1.);
   mean.begin_increment();
   mean.begin_loop();
-  bool to_means = false;
-  for (passes = 0; passes < 10 && !to_means; ++passes)
-    to_means = mean.update(mean.contact(first) ? tension : penetration).to_means;
+  bool to_regularised = false;
+  for (passes = 0; passes < 10 && !to_regularised; ++passes)
+    to_regularised = mean.update(mean.contact(first) ? tension : penetration).to_regularised;
   std::cout << "laws in the mean after " << passes << " passes: " << mean.projected(first) << std::endl;
   tension.pressure[first]  = 0.;
   tension.Lambda[first][0] = 0.;

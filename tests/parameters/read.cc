@@ -1,8 +1,8 @@
 // Every key of the parameter file reaches its member, "--set" wins over the file, every_key.prm forgets no key, JSON
 // says the same, and every key has a unit.
 
-#include <nodus/parameter_file.h>
-#include <nodus/parameters.h>
+#include "parameters/parameter_file.h"
+#include <nodus/parameters/parameters.h>
 
 #include <fstream>
 #include <iostream>

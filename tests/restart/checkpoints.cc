@@ -2,7 +2,7 @@
 
 #include "sliding_block.h"
 
-#include <nodus/signals.h>
+#include <nodus/base/signals.h>
 
 #include <deal.II/base/mpi.h>
 

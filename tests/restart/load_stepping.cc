@@ -1,6 +1,6 @@
 // Time control by itself: which increments follow from failures and successes.
 
-#include <nodus/solve/load_stepping.h>
+#include "run/load_stepping.h"
 
 #include <iostream>
 #include <sstream>

@@ -1,7 +1,7 @@
 // The parts of multigrid against products with T^T K T + R^T D R + d from global vectors: prolongation of the modes,
 // P^T A P, and the symmetry of the cycle. Prolongation and smoother are in single precision.
 
-#include <nodus/solve/multigrid.h>
+#include "solve/multigrid/multigrid.h"
 
 #include "model_problem.h"
 
@@ -47,7 +47,7 @@ namespace
                             {n / 3 + 3, Block{{0., 0.1, 0., 0., 0., 0.1, 0., 0., 0.}}}},
                            Block{{stiffness, 0., 0.1 * stiffness, 0., 2. * stiffness, 0., 0.1 * stiffness, 0., 0.}}});
     }
-    Constraints on_rank(const NodeMatrix &K, const Ownership &displacements) const
+    Constraints on_rank(const BlockCsrMatrix &K, const Ownership &displacements) const
     {
       Constraints                                   result;
       std::vector<std::pair<unsigned int, NodeRow>> rows;
@@ -264,7 +264,7 @@ namespace
     }
 
     ModelProblem::TwoCubes     problem;
-    const NodeMatrix          &K;
+    const BlockCsrMatrix      &K;
     const unsigned int         n;
     const double               scale; ///< of the stiffness
     const GlobalConstraints    constraints;

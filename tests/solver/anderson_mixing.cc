@@ -2,7 +2,7 @@
 // among them one that a plain iteration cycles with (-1) and some that it runs away from (-2.3, case 62 of the random
 // cases; 1.5), take n + 1 mixed steps; without mixing the steps are plain.
 
-#include <nodus/solve/anderson_mixing.h>
+#include "solve/anderson_mixing.h"
 
 #include <deal.II/base/utilities.h>
 

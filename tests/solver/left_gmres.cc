@@ -3,8 +3,8 @@
 
 #include "model_problem.h"
 
-#include <nodus/solve/block_preconditioner.h>
-#include <nodus/solve/left_gmres.h>
+#include "solve/block_preconditioner.h"
+#include "solve/left_gmres.h"
 
 #include <deal.II/base/conditional_ostream.h>
 

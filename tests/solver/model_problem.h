@@ -1,7 +1,7 @@
 #ifndef nodus_tests_solver_model_problem_h
 #define nodus_tests_solver_model_problem_h
 
-#include <nodus/solve/linear_solver.h>
+#include "solve/linear_solver.h"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/distributed/tria.h>

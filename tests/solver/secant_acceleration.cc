@@ -2,7 +2,7 @@
 // a plain iteration cycles with (-1) or runs away from (-1.74, the wedge of theory section 5.4; 1.5) included; with two
 // factors the error still falls. Where a plain iteration contracts by 2 it is left alone.
 
-#include <nodus/solve/secant_acceleration.h>
+#include "solve/secant_acceleration.h"
 
 #include <deal.II/base/utilities.h>
 

@@ -1,8 +1,8 @@
 // Bodies and regions: touching bodies stay separate, ids survive, both gmsh formats read alike, placement and
 // refinement keep curved bodies round, and every kind of unusable input is refused with a message that names the body.
 
-#include <nodus/mesh/bodies.h>
-#include <nodus/mesh/region.h>
+#include "mesh/bodies.h"
+#include "mesh/region.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/mapping_q1.h>

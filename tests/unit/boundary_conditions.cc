@@ -1,7 +1,7 @@
 // Boundary conditions: which nodes are held, values in time, agreement and conflict of conditions, hanging nodes,
 // reactions of a uniaxial test, and the messages for wrong input.
 
-#include <nodus/bulk/solid_assembler.h>
+#include "bulk/solid_assembler.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -155,8 +155,8 @@ namespace
 
   struct Operator
   {
-    const NodeMatrix &matrix;
-    void              vmult(Vector &y, const Vector &x) const
+    const BlockCsrMatrix &matrix;
+    void                  vmult(Vector &y, const Vector &x) const
     {
       matrix.vmult(y.trilinos_vector()[0], x.trilinos_vector()[0]);
     }
@@ -174,7 +174,7 @@ namespace
     std::vector<std::unique_ptr<Material>> materials;
     materials.push_back(make_material(box().material));
     const SolidAssembler assembler(model.dof_handler, model.mapping, materials, boundary_conditions.loads());
-    NodeMatrix           K;
+    BlockCsrMatrix       K;
     Vector               rhs, internal, external;
     assembler.make_sparsity(K);
 

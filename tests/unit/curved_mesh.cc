@@ -4,8 +4,8 @@
 
 #include "../cases.h"
 
-#include <nodus/mesh/bodies.h>
-#include <nodus/mesh/region.h>
+#include "mesh/bodies.h"
+#include "mesh/region.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>

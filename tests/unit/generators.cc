@@ -1,7 +1,7 @@
 // The table of mesh generators against deal.II's functions: every example makes hexahedra, with as many arguments as
 // deal.II wants, and is found right; one argument less, and each argument in words, is found wrong.
 
-#include <nodus/mesh/generators.h>
+#include "parameters/generators.h"
 
 #include "../cases.h"
 

@@ -3,7 +3,7 @@
 
 #include "../cases.h"
 
-#include <nodus/ghost_exchange.h>
+#include "parallel/ghost_exchange.h"
 
 #include <deal.II/base/mpi.h>
 

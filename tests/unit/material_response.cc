@@ -3,7 +3,7 @@
 // exponential hardening, independent of the number of steps and of rotations in between; the work of the stress is
 // stored or dissipated.
 
-#include <nodus/bulk/material.h>
+#include "bulk/material.h"
 
 #include <cmath>
 #include <iostream>

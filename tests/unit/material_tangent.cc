@@ -1,7 +1,7 @@
 // Each law: S is the derivative of the energy, C that of S, both are objective, several points at once give what one
 // after the other does, and the initial moduli are those of linear elasticity; closed-form stresses.
 
-#include <nodus/bulk/material.h>
+#include "bulk/material.h"
 
 #include <cmath>
 #include <iomanip>

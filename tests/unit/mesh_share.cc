@@ -5,8 +5,8 @@
 
 #include "../cases.h"
 
-#include <nodus/mesh/bodies.h>
-#include <nodus/mesh/mesh_share.h>
+#include "mesh/bodies.h"
+#include "mesh/mesh_share.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_handler.h>

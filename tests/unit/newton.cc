@@ -2,8 +2,8 @@
 // x = (sqrt 6 + sqrt 2)/2, y = 1/x) converges quadratically; failures throw; a step out of the domain is halved;
 // progress is measured from the first correction on.
 
-#include <nodus/solve/fixed_point_loop.h>
-#include <nodus/solve/newton.h>
+#include "solve/newton.h"
+#include "run/fixed_point_loop.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/trilinos_parallel_block_vector.h>

@@ -2,7 +2,7 @@
 // point along the normal and nearer than 10000 others; the derivatives of normal and closest point against differences;
 // points move as the rigid body does.
 
-#include <nodus/contact/rigid_surface.h>
+#include "rigid/rigid_surface.h"
 
 #include "../cases.h"
 

@@ -2,7 +2,7 @@
 // a commit keeps the stress, a superimposed rotation turns the forces, and states that are read and written again give
 // the same forces on any number of ranks.
 
-#include <nodus/bulk/solid_assembler.h>
+#include "bulk/solid_assembler.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -104,7 +104,7 @@ namespace
     dealii::AffineConstraints<double>      none;
     std::vector<std::unique_ptr<Material>> materials;
     std::vector<BoundaryConditions::Load>  loads;
-    NodeMatrix                             K;
+    BlockCsrMatrix                         K;
     std::unique_ptr<SolidAssembler>        assembler;
     std::map<DoFIndex, Point>              points;
     Vector                                 u, internal, external, rhs;

@@ -2,7 +2,7 @@
 // forces of rigid motions, homogeneous deformations and loads are the exact ones; an inverted element fails on every
 // rank and leaves no trace.
 
-#include <nodus/bulk/solid_assembler.h>
+#include "bulk/solid_assembler.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -179,7 +179,7 @@ namespace
     std::vector<std::unique_ptr<Material>> materials;
     std::unique_ptr<SolidAssembler>        assembler;
     std::map<DoFIndex, Point>              points;
-    NodeMatrix                             K;
+    BlockCsrMatrix                         K;
     Vector                                 u, internal, external, rhs;
     double                                 time = 1.;
   };

@@ -4,7 +4,7 @@
 
 #include "../cases.h"
 
-#include <nodus/contact/surface_geometry.h>
+#include "contact/surface_geometry.h"
 
 #include <deal.II/base/mpi.h>
 

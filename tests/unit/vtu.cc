@@ -2,7 +2,7 @@
 // quadratic cells; stresses of a homogeneous deformation are exact at the nodes; all contact fields are there; nothing
 // temporary stays behind; a folder that cannot be made is reported on every rank.
 
-#include <nodus/output/vtu.h>
+#include "output/vtu.h"
 
 #include <deal.II/base/function.h>
 #include <deal.II/base/mpi.h>

@@ -2,7 +2,7 @@
 
 #include "../cases.h"
 
-#include <nodus/wait_for_all.h>
+#include "parallel/wait_for_all.h"
 
 #include <deal.II/base/mpi.h>
 

@@ -4,8 +4,8 @@
 
 #include "plain_element.h"
 
-#include <nodus/bulk/element_kernel.h>
-#include <nodus/bulk/solid_assembler.h>
+#include "bulk/element_kernel.h"
+#include "bulk/solid_assembler.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -237,7 +237,7 @@ namespace
     std::vector<BoundaryConditions::Load>               loads;
     std::vector<std::vector<std::unique_ptr<Material>>> materials(std::size(laws));
     std::vector<std::unique_ptr<SolidAssembler>>        assemblers;
-    std::vector<NodeMatrix>                             tangents(std::size(laws));
+    std::vector<BlockCsrMatrix>                         tangents(std::size(laws));
     Elements                                            elements(problem);
     MaterialParameters                                  parameters;
     parameters.youngs_modulus      = 1.;

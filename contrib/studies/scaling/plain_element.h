@@ -1,8 +1,8 @@
 #ifndef nodus_studies_plain_element_h
 #define nodus_studies_plain_element_h
 
-#include <nodus/parameters.h>
-#include <nodus/types.h>
+#include <nodus/base/types.h>
+#include <nodus/parameters/parameters.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>

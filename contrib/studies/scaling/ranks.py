@@ -74,8 +74,8 @@ def measure(n, library):
             "cpu": profile["total"]["cpu_seconds"],
             "work": work.sum(),
             "busiest": work.max() / work.mean(),
-            "peak": profile["total"]["peak_resident_bytes"],
-            "peak before": profile["phases"][0]["peak_resident_bytes"],
+            "peak": profile["total"]["private_bytes"],
+            "peak before": profile["phases"][0]["private_bytes"],
             "Newton": profile["newton_iterations"],
             "Krylov": profile["krylov_iterations"],
             "statuses": [int(contact[f"{name} nodes"]) for name in ("open", "slip", "stick")],
@@ -163,10 +163,10 @@ work that every rank does for the whole model, on cells around its own (stiffnes
 again), and what ranks that share a core take from each other's cache.
 
 {work_text}
-### Peak resident MiB per rank
+### Private MiB per rank
 
-Mean over ranks. *At start*: code and tables of all libraries, which ranks of one machine share and which are handed back
-before the mesh is read; a whole run that stays below that has the same peak.
+Heap and stack, mean over ranks, largest at the end of a phase. *At start*: before the parameters are read. The code of the
+libraries is not in it: ranks of one machine share those pages.
 
 {memory_text}
 ### Messages

@@ -1,0 +1,394 @@
+#ifndef nodus_parameters_parameters_h
+#define nodus_parameters_parameters_h
+
+#include <nodus/base/types.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace dealii
+{
+  class ParameterHandler;
+}
+
+namespace Nodus
+{
+  class ParameterFile;
+  struct DeclaredKey;
+
+  /// Every struct below is one subsection of the parameter file; the text of a key is the name of the
+  /// member with blanks, "Young's modulus" and the like excepted. Keys are bound to members in
+  /// source/parameters.cc and checked in source/parameters_check.cc; values here are the defaults
+  /// that `nodus --document` prints.
+
+  /// A part of the boundary: faces of one body (or of all) with the given boundary ids.
+  struct RegionParameters
+  {
+    unsigned int                            body = 0; ///< number of the body, 0 = every body
+    std::vector<dealii::types::boundary_id> boundary_ids;
+    std::string                             where; ///< muParser predicate of x, y, z; empty = everywhere
+  };
+
+  /// A rigid body in time: x = c + R(t) (X - c) + T(t).
+  struct PrescribedMotionParameters
+  {
+    std::vector<std::string> translation = {"0", "0", "0"}; ///< T, muParser expressions of t [length]
+    std::string              rotation    = "0";             ///< angle about the axis, expression of t [degrees]
+    Vector3                  rotation_axis;                 ///< zero: what the owner says
+    std::vector<double>      rotation_centre;               ///< c, reference position; empty: what the owner says
+  };
+
+  /// A rigid surface in closed form, its body on one side. Convex bodies, or a cavity around the slave.
+  struct MasterSurfaceParameters
+  {
+    enum class Shape
+    {
+      mesh, ///< no such surface: the master is part of a mesh
+      plane,
+      sphere,
+      cylinder,
+      paraboloid ///< of revolution, with the radius of curvature at its apex
+    };
+    Shape                      shape = Shape::mesh;
+    Point                      point;          ///< of the plane, centre, on the axis of the cylinder, apex
+    Vector3                    axis;           ///< of the cylinder; outward normal of plane and apex
+    double                     radius = 0.;    ///< > 0 [length]
+    bool                       cavity = false; ///< the body is outside of sphere, cylinder, paraboloid
+    PrescribedMotionParameters motion;
+  };
+
+  struct MaterialParameters
+  {
+    enum class Law
+    {
+      linear_elastic,
+      st_venant_kirchhoff,
+      neo_hookean,
+      mooney_rivlin,
+      ogden,
+      j2_plasticity
+    };
+    Law    law                 = Law::neo_hookean;
+    double youngs_modulus      = 0.;  ///< initial E > 0 [pressure], to be given; Ogden: follows from the moduli
+    double poissons_ratio      = 0.3; ///< initial nu [-], in (-1, 1/2)
+    double mooney_rivlin_ratio = 0.;  ///< c01/c10 >= 0 (Mooney-Rivlin only)
+
+    std::vector<double> ogden_moduli;    ///< mu_i [pressure] of the terms mu_i/alpha_i (...)
+    std::vector<double> ogden_exponents; ///< alpha_i [-], as many
+
+    /// J2 plasticity: sigma_y(a) = yield + modulus a + (saturation - yield) (1 - exp(-rate a)), or the table.
+    double              yield_stress      = 0.; ///< initial, > 0 [pressure]
+    double              hardening_modulus = 0.; ///< [pressure]
+    double              saturation_stress = 0.; ///< >= yield stress [pressure]; 0: none
+    double              saturation_rate   = 0.; ///< [-]
+    std::vector<double> hardening_strains;      ///< equivalent plastic strains from 0, increasing [-]
+    std::vector<double> hardening_stresses;     ///< yield stresses at these, not decreasing [pressure]
+  };
+
+  struct BodyParameters
+  {
+    enum class VolumetricTreatment
+    {
+      standard,
+      mean_dilatation
+    };
+    std::string               name;
+    std::string               mesh_file;           ///< resolved against the folder of the .prm file
+    std::vector<unsigned int> volume_ids;          ///< physical volumes taken from the file; empty = all
+    std::string               generator;           ///< deal.II GridGenerator function, when no mesh file
+    std::string               generator_arguments; ///< separated by ':', as deal.II prints them
+    double                    scale = 1.;
+    Vector3                   rotation_axis; ///< with rotation_angle in degrees; about the origin
+    double                    rotation_angle = 0.;
+    Vector3                   translation; ///< applied after scale and rotation [length]
+    unsigned int              global_refinement = 0;
+    unsigned int              local_refinement  = 0; ///< more of it ...
+    std::string               refine_where;          ///< ... where this muParser predicate holds at cell centres
+    VolumetricTreatment       volumetric_treatment = VolumetricTreatment::standard;
+    MaterialParameters        material; ///< of a body that is not rigid
+    /// A rigid body may go without: it carries surfaces in closed form.
+    bool has_mesh() const
+    {
+      return !mesh_file.empty() || !generator.empty();
+    }
+
+    bool                       rigid = false;
+    PrescribedMotionParameters motion;     ///< of a rigid body; keys "Rigid translation", ...
+    std::vector<unsigned int>  rigid_free; ///< components that force and moment drive: 0-2 translation, 3-5 rotation
+    std::vector<std::string>   rigid_force  = {"0", "0", "0"}; ///< muParser expressions of t [force]
+    std::vector<std::string>   rigid_moment = {"0", "0", "0"}; ///< about the centre as it moves [force length]
+  };
+
+  struct BoundaryConditionParameters
+  {
+    enum class Type
+    {
+      displacement,
+      traction,   ///< dead, per reference area
+      pressure,   ///< follower, per current area, positive pushes on the body
+      body_force, ///< dead, per reference volume; the region's body only
+      spring      ///< to ground, stiffness per reference area
+    };
+    std::string               name;
+    Type                      type = Type::displacement;
+    RegionParameters          region;
+    std::vector<unsigned int> components; ///< 0, 1, 2; not used by pressure
+    std::vector<std::string>  value;      ///< muParser expressions of x, y, z, t: one per component, one for pressure
+    double                    active_from  = 0.; ///< acts in the increments after this time ...
+    double                    active_until = 0.; ///< ... that end at this time at the latest; 0 = the whole path
+
+    /// Whether it counts for the equilibrium at time @p t.
+    bool acts(const double t) const
+    {
+      return (active_from == 0. || t > active_from) && (active_until == 0. || t <= active_until);
+    }
+  };
+
+  struct ContactPairParameters
+  {
+    enum class Scheme
+    {
+      nodal,
+      integration_point,
+      averaged
+    };
+    enum class Integration
+    {
+      face,
+      segment
+    };
+    enum class QuadratureRule
+    {
+      gauss,
+      simpson,
+      newton_cotes
+    };
+    enum class Surface
+    {
+      faceted,
+      smoothed
+    };
+    enum class SurfaceMeasure
+    {
+      current,
+      reference
+    };
+    enum class Weights
+    {
+      nodal_quadrature,
+      dual,
+      consistent
+    };
+    enum class Normal
+    {
+      master_facet,
+      averaged,
+      slave
+    };
+    enum class InitialStatus
+    {
+      by_gap,
+      closed,
+      open
+    };
+    enum class StatusTest
+    {
+      weighted,
+      raw
+    };
+    enum class ContactLaw
+    {
+      unilateral,
+      bilateral, ///< what has closed never opens
+      tied       ///< closed from the start, without slip
+    };
+    enum class FrictionLaw
+    {
+      coulomb,
+      tresca
+    };
+    enum class InitialOverclosure
+    {
+      resolve,     ///< pressed out of each other in the first increment
+      adjust,      ///< taken as the undeformed state
+      interference ///< pressed out in the course of the first interval
+    };
+    std::string        name;
+    RegionParameters   slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
+    RegionParameters   master; ///< keys "Master body", ...
+    ContactLaw         contact_law                 = ContactLaw::unilateral;
+    FrictionLaw        friction_law                = FrictionLaw::coulomb;
+    double             friction_coefficient        = 0.;
+    double             second_friction_coefficient = 0.;     ///< across the friction direction; 0: the same
+    Vector3            friction_direction;                   ///< of the first coefficient; zero: there is only one
+    std::string        friction_factor                = "1"; ///< of reference x, y, z and slip rate v
+    double             shear_limit                    = 0.;  ///< [pressure]; 0: none
+    double             normal_augmentation_factor     = 1.;  ///< times E/h gives rho_n
+    double             tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
+    Scheme             scheme                         = Scheme::averaged;
+    Integration        integration                    = Integration::segment;  ///< averaged scheme
+    QuadratureRule     quadrature_rule                = QuadratureRule::gauss; ///< integration points, averaged by face
+    unsigned int       quadrature_points              = 0; ///< per direction of a slave face; 0 = automatic
+    SurfaceMeasure     surface_measure                = SurfaceMeasure::current;
+    Weights            weights                        = Weights::nodal_quadrature;
+    Surface            surface                        = Surface::smoothed;
+    Normal             normal                         = Normal::averaged;
+    double             search_distance                = 0.;   ///< [length]; 0 = automatic
+    double             projection_tolerance           = 0.05; ///< overhang accepted, in face sizes
+    InitialStatus      initial_status                 = InitialStatus::by_gap;
+    InitialOverclosure initial_overclosure            = InitialOverclosure::resolve;
+    double             adjustment_distance            = 0.; ///< gaps up to here are adjusted, too [length]
+    double             overclosure_limit              = 0.; ///< [length]; 0 = automatic
+    StatusTest         status_test                    = StatusTest::weighted;
+
+    MasterSurfaceParameters master_surface; ///< instead of the master faces; keys "Master surface", ...
+
+    /// One in closed form that moves with a rigid body of the model.
+    bool has_carried_master() const
+    {
+      return has_rigid_master() && master.body > 0;
+    }
+    bool has_rigid_master() const
+    {
+      return master_surface.shape != MasterSurfaceParameters::Shape::mesh;
+    }
+    /// Of the averaged scheme: there is nothing that segments could end at on a rigid master.
+    Integration applied_integration() const
+    {
+      return has_rigid_master() ? Integration::face : integration;
+    }
+  };
+
+  struct LoopParameters
+  {
+    enum class Mode
+    {
+      fixed_point,
+      newton
+    };
+    unsigned int maximum_passes = 10;
+    double       tolerance      = 0.;                ///< relative; the status loop has none: no status may change
+    Mode         mode           = Mode::fixed_point; ///< newton: part of each Newton iteration, no loop
+  };
+
+  struct NewtonParameters
+  {
+    unsigned int maximum_iterations = 25;
+    double       force_tolerance    = 1e-8; ///< relative to the largest nodal force
+    double contact_tolerance = 1e-8; ///< gap and slip relative to the displacement of the step; friction law absolute
+    bool   line_search       = false;
+    double largest_forcing_term = 1e-4; ///< relative accuracy of a correction; 0: that of the linear solver
+  };
+
+  struct LinearSolverParameters
+  {
+    enum class Type
+    {
+      automatic, ///< see chosen_solver
+      direct,
+      block,
+      condensed
+    };
+    Type         type                = Type::direct;
+    double       tolerance           = 1e-10; ///< block, condensed: relative residual
+    unsigned int maximum_iterations  = 500;   ///< block, condensed: Krylov iterations
+    double       augmentation_factor = 2.;    ///< block: gamma, in units of the diagonal of the stiffness
+  };
+
+  struct LoadSteppingParameters
+  {
+    std::vector<double>       interval_ends = {1.}; ///< increasing times; the first interval starts at 0
+    std::vector<unsigned int> increments    = {1};  ///< per interval
+    bool                      cut_back      = true; ///< halve increments that fail
+    double       minimum_increment     = 0.; ///< of time, that cut-backs stop at; 0 = 1/64 of the interval's increments
+    double       maximum_increment     = 0.; ///< of time, that increments grow to; 0 = the interval's increments
+    unsigned int easy_iterations       = 10; ///< of Newton, up to which the next increment may be twice as large
+    double       viscous_stabilisation = 0.; ///< [-], see ViscousStabilisation; 0: none
+  };
+
+  struct AdaptivityParameters
+  {
+    enum class Marking
+    {
+      fixed_fraction,
+      target_error
+    };
+    unsigned int interval               = 0;  ///< refine after every so many increments; 0: never
+    unsigned int initial_cycles         = 0;  ///< before the first increment, near expected contact
+    double       contact_distance       = 0.; ///< gaps up to here are expected to close [length]; 0: a slave face
+    unsigned int repetitions            = 0;  ///< of an increment, until nothing is to be refined
+    double       bulk_weight            = 1.; ///< of the stress against the recovered one
+    double       contact_weight         = 1.; ///< of the contact indicator
+    Marking      marking                = Marking::fixed_fraction;
+    double       refine_fraction        = 0.3; ///< of the squared error in the cells to be refined (fixed fraction)
+    double       coarsen_fraction       = 0.03;
+    double       target_error           = 0.05; ///< relative, in energy (target error)
+    unsigned int maximum_level          = 2;    ///< refinements beyond those of the body
+    double       maximum_unknowns       = 1e6;  ///< displacement degrees of freedom
+    bool         slave_at_least_as_fine = true;
+  };
+
+  struct OutputParameters
+  {
+    std::string  results_folder; ///< empty = results/<name of the .prm file>, in the working folder
+    bool         write_vtu           = true;
+    unsigned int vtu_interval        = 1;  ///< every so many increments; 0 = only the last one
+    unsigned int checkpoint_interval = 10; ///< every so many increments; 0 = on signals only
+  };
+
+  struct Parameters
+  {
+    std::string                              file; ///< the .prm or .json file, for messages
+    std::string                              title;
+    unsigned int                             degree = 1; ///< of the displacement, 1 or 2
+    std::vector<BodyParameters>              bodies;
+    std::vector<BoundaryConditionParameters> boundary_conditions;
+    std::vector<ContactPairParameters>       contact_pairs;
+    LoopParameters                           geometry_loop  = {15, 0.01, LoopParameters::Mode::newton};
+    LoopParameters                           threshold_loop = {30, 1e-4, LoopParameters::Mode::newton};
+    LoopParameters                           status_loop    = {30, 0., LoopParameters::Mode::newton};
+    NewtonParameters                         newton;
+    LinearSolverParameters                   linear_solver = {LinearSolverParameters::Type::automatic};
+    LoadSteppingParameters                   load_stepping;
+    AdaptivityParameters                     adaptivity;
+    OutputParameters                         output;
+
+    /// Strict parse of @p file after applying @p overrides ("Section/Key=value"). Throws InputError.
+    static Parameters read(const std::string &file, const std::vector<std::string> &overrides = {});
+
+    /// Values of the keys that may not change from a checkpoint to the restart, by "Section/Key": discretization,
+    /// bodies, boundary conditions and contact pairs.
+    std::map<std::string, std::string> model() const;
+
+    /// The reference of all parameters in Markdown (`nodus --document`).
+    static std::string documentation();
+
+    /// Section, default, allowed values, unit and meaning of every key whose path ("Contact pair 1/Scheme") contains
+    /// @p key, in upper or lower case (`nodus --explain`). @throws InputError, with the nearest keys, without any.
+    static std::string explain(const std::string &key);
+
+  private:
+    /// One body, one boundary condition and one contact pair, for the reference.
+    static std::vector<DeclaredKey> reference_keys();
+
+    /// Binds every key to its member; the numbers of bodies, conditions and pairs are already set.
+    void add_parameters(dealii::ParameterHandler &prm);
+
+    /// Everything that can be seen without a mesh. @throws InputError
+    void check(const ParameterFile &file) const;
+  };
+
+  /// Choices as they are written in the parameter file.
+  std::string text_of(MaterialParameters::Law law);
+  std::string text_of(BoundaryConditionParameters::Type type);
+  std::string text_of(MasterSurfaceParameters::Shape shape);
+  std::string text_of(ContactPairParameters::Scheme scheme);
+  std::string text_of(ContactPairParameters::Integration integration);
+  std::string text_of(ContactPairParameters::Surface surface);
+  std::string text_of(ContactPairParameters::ContactLaw law);
+  std::string text_of(LoopParameters::Mode mode);
+  std::string text_of(LinearSolverParameters::Type type);
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,56 @@
+#ifndef nodus_bulk_loads_h
+#define nodus_bulk_loads_h
+
+#include "bulk/boundary_conditions.h"
+#include "bulk/material.h"
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/mapping.h>
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <memory>
+#include <vector>
+
+namespace Nodus
+{
+  /// Body forces, tractions, pressures and springs, cell by cell.
+  class Loads
+  {
+  public:
+    /// All arguments outlive the object.
+    Loads(const dealii::DoFHandler<dim>                &dof_handler,
+          const dealii::Mapping<dim>                   &mapping,
+          const std::vector<std::unique_ptr<Material>> &materials,
+          std::vector<BoundaryConditions::Load>        &loads);
+    ~Loads();
+
+    /// Finds the loads of the next cell: cells are numbered in the order of the calls.
+    void add_cell(const dealii::DoFHandler<dim>::active_cell_iterator &cell);
+
+    /// Sets the time; does nothing when it is the last one.
+    void evaluate(double t);
+
+    bool act_on(unsigned int cell) const;
+
+    /// Displacement of a cell and what the loads add to; in the order of the element's degrees of freedom.
+    struct Cell
+    {
+      const std::vector<double>  &u;
+      dealii::Vector<double>     &internal; ///< springs
+      dealii::Vector<double>     &external;
+      dealii::FullMatrix<double> *tangent; ///< of internal - external; null: not wanted
+    };
+    /// Adds the loads of a cell that they act on, at the time of evaluate().
+    void add(unsigned int number, const Cell &cell) const;
+
+    /// Energy stored in the springs of a cell that loads act on, at the displacement @p u of its nodes.
+    double spring_energy(unsigned int number, const std::vector<double> &u) const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+  };
+} // namespace Nodus
+
+#endif

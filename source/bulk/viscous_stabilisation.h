@@ -1,0 +1,60 @@
+#ifndef nodus_bulk_viscous_stabilisation_h
+#define nodus_bulk_viscous_stabilisation_h
+
+#include "bulk/material.h"
+#include "mesh/bodies.h"
+#include "solve/block_csr_matrix.h"
+#include <nodus/base/types.h>
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/mapping.h>
+#include <deal.II/lac/affine_constraints.h>
+
+#include <memory>
+#include <vector>
+
+namespace Nodus
+{
+  /// Dashpots to ground at every node, for bodies that nothing holds before contact closes. A node with the volume V of
+  /// a body of stiffness E and size L resists its displacement since the start of the increment with
+  ///
+  ///     f = -viscosity E V/L^2 s T/dt du,   T: duration of the interval, dt: of the increment,
+  ///
+  /// where s falls from 1 to 0 in the course of the interval: at its end nothing is left.
+  class ViscousStabilisation
+  {
+  public:
+    /// @p viscosity relative, >= 0. Collective.
+    ViscousStabilisation(double                                        viscosity,
+                         const Bodies                                 &bodies,
+                         const std::vector<std::unique_ptr<Material>> &materials,
+                         const dealii::DoFHandler<dim>                &dof_handler,
+                         const dealii::Mapping<dim>                   &mapping);
+
+    /// The increment from @p begin to @p end of an interval.
+    void set_increment(double begin, double end, double interval_begin, double interval_end);
+    bool acts() const
+    {
+      return rate_ > 0.;
+    }
+
+    /// Of the owned degree of freedom number @p i against its displacement in the increment [force/length].
+    double resistance(const unsigned int i) const
+    {
+      return acts() ? rate_ * resistance_[i] : 0.;
+    }
+
+    /// Adds the resistance against @p moved (owned displacements since the start of the increment) to @p force, zero at
+    /// constrained ones, and its tangent to @p matrix.
+    void add(const Vector                            &moved,
+             const dealii::AffineConstraints<double> &constraints,
+             BlockCsrMatrix                          &matrix,
+             Vector                                  &force) const;
+
+  private:
+    std::vector<double> resistance_; ///< viscosity E V/L^2 of the owned degrees of freedom [force/length]
+    double              rate_ = 0.;  ///< s T/dt
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,92 @@
+#ifndef nodus_contact_contact_assembler_h
+#define nodus_contact_contact_assembler_h
+
+#include "contact/jump_operator.h"
+#include "contact/pairing.h"
+#include "contact/status.h"
+#include "contact/surface.h"
+#include "contact/surface_weights.h"
+#include "solve/linear_system.h"
+
+#include <array>
+#include <vector>
+
+namespace Nodus
+{
+  /// Nodal values that the contact terms depend on, of the local surface nodes and slave nodes.
+  struct ContactState
+  {
+    std::vector<Point>   x;          ///< current positions of the surface nodes
+    std::vector<Vector3> increment;  ///< their displacement since the start of the load step
+    std::vector<Vector3> prescribed; ///< what the next correction must add at prescribed components, zero elsewhere
+    std::vector<Point>   centre;     ///< of the driven rigid bodies
+    std::vector<double>  lambda;     ///< per slave node [pressure]
+    std::vector<std::array<double, 2>> Lambda; ///< per slave node, in its tangent frame
+  };
+
+  /// Contact and friction terms of the residual (eq. 10-15), owned sites and ghosts.
+  struct ContactResidual
+  {
+    std::vector<Vector3> jump;   ///< per site, work conjugate to its jump: minus the force on the slave [force]
+    std::vector<double>  lambda; ///< contact law, per slave node [volume]
+    std::vector<std::array<double, 2>> Lambda;          ///< friction law, per slave node
+    std::vector<double>                friction_weight; ///< sum of weight |mu lambda_s phi|, per slave node [force]
+    std::vector<double> rigid; ///< six per driven rigid body: force and moment about its centre, of owned sites alone
+  };
+
+  /// Residual and symmetric tangent of contact and friction for frozen pairing, statuses and threshold.
+  ///
+  /// Every product of two contact fields is a sum over the points of SurfaceWeights of filtered fields: contact S,
+  /// stick S S_f, slip S (1 - S_f), open 1 - S. Nodal statuses filter the nodal values of both factors (eq. 32-34); a
+  /// point of the integration point scheme has one jump and one status, which filter the fields at the point (eq.
+  /// 10-21).
+  class ContactAssembler
+  {
+  public:
+    ContactAssembler(const ContactSurfaces &surfaces,
+                     const Pairing         &pairing,
+                     const JumpOperator    &jump,
+                     const SurfaceWeights  &weights,
+                     const Status          &status);
+
+    /// Fills the contact couplings, the multiplier scale, the border and the multiplier blocks of the right-hand side
+    /// of @p system; subtracts the contact forces from its displacement block (free components only). Collective.
+    /// @p linearise_threshold: the thresholds follow the current pressure (SurfaceWeights, site_pressure); the tangent
+    /// gets the derivative of the friction tractions with respect to lambda and is not symmetric any more. That of the
+    /// factors which scale the friction law rows is left out where a row has one factor (one node a point), and
+    /// sticking nodes have none there, because the caller keeps their mu lambda Lambda when the threshold moves.
+    ContactResidual assemble(const ContactState &state, LinearSystem &system, bool linearise_threshold = false) const;
+
+    /// Adds the contact force residual G^T R_jump to all components, prescribed ones too. Collective (compresses).
+    void add_forces(const ContactResidual &residual, Vector &force) const;
+
+    /// Largest relative violation of the contact and friction laws: lengths over @p length, friction law absolute.
+    /// Collective.
+    double norm(const ContactResidual &residual, double length) const;
+
+    /// d_n, without what is adjusted, and the tangential jump of the increment at an owned site; 0 where unpaired.
+    double                distance(const ContactState &state, unsigned int site) const;
+    std::array<double, 2> slip(const ContactState &state, unsigned int site) const;
+
+  private:
+    /// d(mu lambda_s)/d lambda_k of every site whose friction follows the pressure.
+    std::vector<std::vector<std::pair<unsigned int, double>>> threshold_derivative() const;
+
+    /// Part of a driven rigid body in the jump of a site: weight T + omega x arm.
+    struct RigidShare
+    {
+      unsigned int body   = dealii::numbers::invalid_unsigned_int;
+      double       weight = 0.;
+      Vector3      arm;
+    };
+    std::vector<RigidShare> rigid_shares(const ContactState &state) const;
+
+    const ContactSurfaces &surfaces_;
+    const Pairing         &pairing_;
+    const JumpOperator    &jump_;
+    const SurfaceWeights  &weights_;
+    const Status          &status_;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,303 @@
+#ifndef nodus_contact_status_h
+#define nodus_contact_status_h
+
+#include "contact/friction_limit.h"
+#include "contact/surface.h"
+#include <nodus/base/types.h>
+#include <nodus/parameters/parameters.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+namespace Nodus
+{
+  class Pairing;
+
+  /// Quantities at the contact sites that the status tests look at.
+  struct StatusInput
+  {
+    std::vector<double>                pressure; ///< lambda_bar (weighted) or lambda (raw) [pressure]
+    std::vector<double>                distance; ///< d_n > 0 penetration [length]
+    std::vector<std::array<double, 2>> Lambda;   ///< friction semi-multiplier in the tangent frame
+    std::vector<std::array<double, 2>> slip;     ///< tangential jump of the step's displacement, scaled as
+                                                 ///< SitePairing::friction_scale says [length]
+  };
+
+  /// Why a status changed: what contradicted it.
+  enum class Contradiction : char
+  {
+    none,
+    tension,     ///< while closed
+    penetration, ///< while open
+    over_cone,   ///< friction traction beyond the threshold while stick
+    against_slip ///< slip against the friction traction
+  };
+
+  /// What happened to a site's status in the increment.
+  struct StatusLedger
+  {
+    unsigned int  changes = 0;
+    unsigned int  period  = 0; ///< passes after which a cycle that moved this site came back; 0: no cycle
+    Contradiction last    = Contradiction::none;
+  };
+
+  /// Contact status S, friction status S_f and frozen threshold mu lambda_s of the local contact sites: slave nodes, or
+  /// the integration points of pairs with that scheme (their slave nodes stay open). Owners decide, ghosts follow.
+  class Status
+  {
+  public:
+    /// @p normal_augmentation and @p stiffness of each pair [pressure/length, pressure].
+    Status(const std::vector<ContactPairParameters> &pairs,
+           const ContactSurfaces                    &surfaces,
+           const std::vector<double>                &normal_augmentation,
+           const std::vector<double>                &stiffness);
+
+    /// Number of local contact sites.
+    unsigned int size() const
+    {
+      return now_.contact.size();
+    }
+    bool contact(const unsigned int site) const
+    {
+      return now_.contact[site];
+    }
+    /// S_f: meaningful where friction() holds.
+    bool stick(const unsigned int site) const
+    {
+      return now_.stick[site];
+    }
+    /// mu lambda_s <= 0, frozen by the threshold loop.
+    double threshold(const unsigned int site) const
+    {
+      return now_.threshold[site];
+    }
+    /// In contact with a threshold above the relative floor; otherwise the site is frictionless.
+    bool friction(const unsigned int site) const
+    {
+      return now_.contact[site] && -now_.threshold[site] > threshold_floor_[surfaces_.pair(site)];
+    }
+    /// An integration point that holds its laws in the mean.
+    bool projected(const unsigned int site) const
+    {
+      return regularised_ && can_project(surfaces_.pair(site));
+    }
+    /// While equilibrium is found on a new mesh: motion that is due to the mesh alone has no friction of its own. Sites
+    /// that slip keep the friction direction that they were taken over with, the others stick.
+    void hold_friction(const bool hold)
+    {
+      hold_ = hold;
+    }
+    bool holds_friction(const unsigned int site) const
+    {
+      return hold_ && pairs_[surfaces_.pair(site)].contact_law != ContactPairParameters::ContactLaw::tied;
+    }
+    /// Pairs whose consistent weights are lumped for now, to hold their laws in the mean.
+    std::vector<bool> lumped() const;
+    ContactStatus     status(const unsigned int site) const
+    {
+      return !contact(site)                  ? ContactStatus::open
+             : friction(site) && stick(site) ? ContactStatus::stick
+                                             : ContactStatus::slip;
+    }
+    /// Derivative of the threshold with respect to the pressure that froze it.
+    double threshold_slope(const unsigned int site) const
+    {
+      return threshold_slope_[site];
+    }
+    /// What of d_n at the first pairing counts as no overclosure (d_n > 0) or gap (d_n < 0) now [length].
+    double adjustment(const unsigned int site) const
+    {
+      return now_.adjustment[site] * (interferes(surfaces_.pair(site)) ? 1. - resolved_ : 1.);
+    }
+    /// rho_n = h_n of the site's pair [pressure/length].
+    double normal_augmentation(const unsigned int site) const
+    {
+      return normal_augmentation_[surfaces_.pair(site)];
+    }
+    /// rho_tau = h_tau for a friction threshold: the friction traction is augmented as the normal one [1/length].
+    double tangential_augmentation(const unsigned int site, const double threshold) const
+    {
+      const unsigned int pair = surfaces_.pair(site);
+      return pairs_[pair].tangential_augmentation_factor * normal_augmentation_[pair] /
+             std::max(-threshold, threshold_floor_[pair]);
+    }
+
+    /// First pairing of the run: by gap, closed or open, and what is adjusted. Collective.
+    void initialize(const Pairing &pairing, const std::vector<double> &distance);
+    /// Imposes the state of one site: S, S_f and mu lambda_s; call it on every rank that has the site. Collective.
+    void assign(unsigned int site, bool contact, bool stick, double threshold);
+    /// Sites that lost their partner open.
+    void inherit(const Pairing &pairing);
+
+    /// Freezes mu lambda_s from the weighted pressure; returns the largest change of a threshold, relative to the
+    /// largest threshold of its pair, and its site. Collective.
+    struct Change
+    {
+      double       value = 0.;
+      unsigned int site  = dealii::numbers::invalid_unsigned_int; ///< on the rank that owns it, invalid on others
+    };
+    Change threshold_change(const std::vector<double> &site_pressure) const;
+    void   freeze_threshold(const std::vector<double> &site_pressure);
+    /// mu lambda_s of every local site: as it is frozen, and as it would be with @p site_pressure.
+    const std::vector<double> &thresholds() const
+    {
+      return now_.threshold;
+    }
+    std::vector<double> thresholds_at(const std::vector<double> &site_pressure) const;
+    /// Freezes these instead, which need not belong to a pressure; right at owned sites. Collective.
+    void freeze(std::vector<double> thresholds);
+    /// A pair has friction at all; friction that depends on the pressure; on position or slip rate.
+    bool has_friction() const
+    {
+      return has(&FrictionLimit::exists);
+    }
+    bool threshold_follows_pressure() const
+    {
+      return has(&FrictionLimit::follows_pressure);
+    }
+    bool friction_varies() const
+    {
+      return has(&FrictionLimit::varies);
+    }
+    /// Slip rates of the owned sites [length/time], for the friction factors. @throws InputError on every rank where a
+    /// factor is not >= 0. Collective.
+    void set_slip_rates(const std::vector<double> &rate);
+    /// Part of the interference of fits that is pressed out by now, 0 to 1.
+    void set_resolved_interference(const double part)
+    {
+      resolved_ = part;
+    }
+
+    /// Part of the friction limits that is in force, 0 to 1: 1 but for the way to a first iterate. As it grows from 0,
+    /// all closed sites slip, in the direction that they moved in without friction.
+    void set_friction_fraction(double fraction);
+
+    /// Statuses forget which vectors this loop has visited. @p merged: updates follow single Newton iterations.
+    void begin_loop(bool merged = false);
+    struct Update
+    {
+      unsigned int              changes        = 0;     ///< on all ranks
+      unsigned int              period         = 0;     ///< > 0: this status vector was visited that many passes ago
+      bool                      cycles         = false; ///< merged loop: visited again too often
+      unsigned int              frozen         = 0;     ///< sites that keep their status from here on, on all ranks
+      bool                      to_regularised = false; ///< from here on laws hold in the mean where that is possible
+      std::vector<unsigned int> sites;                  ///< of this rank that changed
+    };
+    /// Tests every site and changes those that contradict their status (eq. 2, 3, 7, 8); begin_loop() comes first. Once
+    /// a status vector comes back, only the contradicting site of lowest order (ContactSurfaces) changes in a pass:
+    /// Murty's least-index rule, which is finite for frictionless contact at frozen geometry where changing all at once
+    /// may cycle. Where one comes back even so (friction), no vector may satisfy all sites: those that take part in the
+    /// cycle, and in later ones, are frozen with the status that they contradict least; the others change all at once
+    /// again. A merged loop has no such rules and cycles when vectors come back time and again.
+    /// Before all that, sites that share multipliers, whose conditions need not have a common solution, hold their laws
+    /// in the mean for the rest of the attempt: see regularise(). Collective.
+    /// @p closing_only: sites that penetrate close, nothing else changes (an iterate whose pressures mean nothing yet).
+    Update update(const StatusInput &input, bool closing_only = false);
+
+    /// Until begin_increment():
+    /// - Integration points have the pressure lambda - rho_n d_n where that is negative, and the friction direction
+    ///   Lambda + rho_tau slip projected on the unit ball. Frictionless, this is the saddle point of an augmented
+    ///   Lagrangian: it exists, and statuses that belong to it.
+    /// - Consistent weights with friction are lumped: a node rubs with the threshold of its own mean pressure, not with
+    ///   those of its neighbours, which would go on where it opens. Its mean pressure has the same equations as before.
+    void regularise()
+    {
+      regularised_ = true;
+    }
+    /// Largest violation of the sites that were frozen in this loop, relative to the pressure of the pair or to the
+    /// cone, where it is, and how many have one. Collective.
+    struct Violation
+    {
+      double       value = 0.;
+      unsigned int site  = dealii::numbers::invalid_unsigned_int; ///< on the rank that owns it, invalid on others
+      unsigned int sites = 0;                                     ///< on all ranks
+    };
+    Violation frozen_violation(const StatusInput &input) const;
+
+    /// S, S_f, thresholds, accumulated slips and adjustments of all local sites.
+    struct State
+    {
+      std::vector<char>                  contact, stick;
+      std::vector<double>                threshold;
+      std::vector<std::array<double, 2>> slip;
+      std::vector<double>                adjustment;
+    };
+    /// The state at hand, and back to one of the same increment. Collective.
+    const State &state() const
+    {
+      return now_;
+    }
+    void set_state(const State &state);
+
+    /// Empties the ledger, at the start of an increment.
+    void                begin_increment();
+    const StatusLedger &ledger(const unsigned int site) const
+    {
+      return ledger_[site];
+    }
+    const std::array<double, 2> &accumulated_slip(const unsigned int site) const
+    {
+      return now_.slip[site];
+    }
+
+    /// The increment converged: adds its slip (right at owned sites) and keeps the state; or goes back to the last kept
+    /// one. Collective.
+    void commit(const std::vector<std::array<double, 2>> &slip);
+    void roll_back();
+
+    /// What commit() kept of a site as numbers: S, S_f, mu lambda_s, the accumulated slip and the adjustment.
+    using Record = std::array<double, 6>;
+    Record kept(unsigned int site) const;
+    /// Goes back to a state that was kept() once; one record per site, right at owned ones. Collective.
+    void restore(std::vector<Record> records);
+
+  private:
+    bool has(bool (FrictionLimit::*property)() const) const
+    {
+      return std::any_of(
+          limits_.begin(), limits_.end(), [&](const FrictionLimit &limit) { return (limit.*property)(); });
+    }
+    bool interferes(const unsigned int pair) const
+    {
+      return pairs_[pair].initial_overclosure == ContactPairParameters::InitialOverclosure::interference;
+    }
+    double factor(const unsigned int site) const
+    {
+      return friction_fraction_ * friction_factor_[site];
+    }
+    bool              can_project(unsigned int pair) const;
+    bool              can_lump(unsigned int pair) const;
+    bool              can_regularise() const;
+    void              update_floor();
+    void              note_friction();
+    std::vector<char> code() const;
+    /// How a site contradicts its status, and by how much: relative to @p pressure of the pair, or to the cone.
+    Contradiction       contradiction(const StatusInput &input, unsigned int site, double pressure, double &size) const;
+    std::vector<double> largest_pressures(const StatusInput &input) const;
+    void                find_period(Update &update);
+    unsigned int        freeze(const std::vector<unsigned int> &sites);
+
+    const std::vector<ContactPairParameters> &pairs_;
+    const ContactSurfaces                    &surfaces_;
+    std::vector<double>                       normal_augmentation_;
+    std::vector<FrictionLimit>                limits_; ///< of the pairs
+    State                                     now_, committed_;
+    std::vector<double>                       threshold_slope_, friction_factor_; ///< of the sites
+    std::vector<double>                       threshold_floor_;                   ///< of the pairs
+    double                                    resolved_ = 0., friction_fraction_ = 1.;
+    std::vector<StatusLedger>                 ledger_;
+    std::vector<std::vector<char>>            visited_;
+    std::vector<char>                         opened_; ///< in this status loop
+    std::vector<char>                         frozen_; ///< in this status loop
+    std::vector<std::array<double, 3>>        seen_; ///< last violation while open, slip, stick since a cycle; -1: none
+    std::vector<char>                         had_friction_; ///< at the last test: the iterate knows of friction there
+    bool                                      one_at_a_time_ = false, freezes_ = false, merged_ = false;
+    bool                                      regularised_ = false; ///< in this attempt at the increment
+    bool                                      hold_        = false;
+    unsigned int                              returns_     = 0; ///< to a visited vector, in this loop
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,341 @@
+#ifndef nodus_contact_surface_h
+#define nodus_contact_surface_h
+
+#include "contact/face_directory.h"
+#include "contact/surface_face.h"
+#include "mesh/bodies.h"
+#include "parallel/ghost_exchange.h"
+#include "rigid/rigid_surface.h"
+#include "solve/linear_system.h"
+#include <nodus/base/types.h>
+#include <nodus/parameters/parameters.h>
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/mapping.h>
+#include <deal.II/lac/affine_constraints.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+namespace Nodus
+{
+  /// A displacement node of a contact surface.
+  struct SurfaceNode
+  {
+    std::array<DoFIndex, dim> dofs;
+    Point                     X;     ///< reference position
+    unsigned int              owner; ///< rank that owns its degrees of freedom
+
+    /// Of a hanging node: what it follows, indices into ContactSurfaces::nodes() and weights, and how far its reference
+    /// position is from theirs.
+    std::vector<std::pair<unsigned int, double>> masters;
+    Vector3                                      offset;
+  };
+
+  /// A node that carries multipliers.
+  struct SlaveNode
+  {
+    unsigned int node; ///< index into ContactSurfaces::nodes()
+    unsigned int pair;
+  };
+
+  /// An integration point of a slave face with statuses of its own (scheme `integration point`).
+  struct SlavePoint
+  {
+    unsigned int pair, face;      ///< face: index into slave_faces(pair)
+    double       xi, eta, weight; ///< of the rule on [0, 1]^2
+  };
+
+  /// How messages call a pair: its number, and its name when it has one.
+  std::string pair_label(const std::vector<ContactPairParameters> &pairs, unsigned int pair);
+
+  /// Divides the cells among the ranks so that those with slave faces, where contact is searched and assembled, do not
+  /// all come on top of an equal share, now and whenever the mesh changes. @p mapping must outlive that. Collective.
+  void
+  balance_contact(const std::vector<ContactPairParameters> &pairs, const dealii::Mapping<dim> &mapping, Bodies &bodies);
+
+  /// This rank's part of the slave and master surfaces of all pairs, in local numbers.
+  ///
+  /// A slave node that hangs is no slave node: it carries no multiplier and no status, the basis functions of the slave
+  /// nodes that it follows extend over it. Where a jump or a force has to do with a hanging node of either side, its
+  /// share goes to the nodes that it follows (expand()).
+  ///
+  /// - slave faces: of own cells, and all at the nodes of those and at own nodes. Normals and areas are complete at the
+  ///   nodes of own faces and at own nodes; values that need more at the nodes beyond come from their owners, by the
+  ///   exchanges;
+  /// - master faces: of own cells, those that can be partners of this rank's sites, and one layer around for the
+  ///   normals. They are fetched anew when the surfaces have moved.
+  ///
+  /// Faces are in ascending order of their numbers, which do not depend on the number of ranks: so ties are broken and
+  /// sums are ordered alike on all of them.
+  class ContactSurfaces
+  {
+  public:
+    /// Collective. @p pairs must outlive it. @throws InputError on all ranks: a side without faces, a node that is
+    /// slave twice, a face on both sides of a pair.
+    ContactSurfaces(const std::vector<ContactPairParameters> &pairs,
+                    const Bodies                             &bodies,
+                    const dealii::DoFHandler<dim>            &dof_handler,
+                    const dealii::Mapping<dim>               &mapping);
+
+    unsigned int degree() const
+    {
+      return degree_;
+    }
+    unsigned int n_pairs() const
+    {
+      return slave_faces_.size();
+    }
+    /// The first are the slave nodes, in the order of slave_nodes(), then what else is on slave faces.
+    const std::vector<SurfaceNode> &nodes() const
+    {
+      return nodes_;
+    }
+    /// Those of this rank come first, in the order of their multipliers.
+    const std::vector<SlaveNode> &slave_nodes() const
+    {
+      return slave_nodes_;
+    }
+    /// Integration points of the pairs that have that scheme, face by face.
+    const std::vector<SlavePoint> &slave_points() const
+    {
+      return slave_points_;
+    }
+    /// Contact sites are the places with a jump, a frame and statuses: first the slave nodes, then the integration
+    /// points.
+    unsigned int n_sites() const
+    {
+      return slave_nodes_.size() + slave_points_.size();
+    }
+    bool is_point(const unsigned int site) const
+    {
+      return site >= slave_nodes_.size();
+    }
+    const SlavePoint &point(const unsigned int site) const
+    {
+      return slave_points_[site - slave_nodes_.size()];
+    }
+    unsigned int pair(const unsigned int site) const
+    {
+      return is_point(site) ? point(site).pair : slave_nodes_[site].pair;
+    }
+    /// Slave nodes of a pair with integration points carry multipliers and frames, but no statuses.
+    bool has_status(const unsigned int site) const
+    {
+      return is_point(site) || !has_points_[slave_nodes_[site].pair];
+    }
+    bool has_points(const unsigned int pair) const
+    {
+      return has_points_[pair];
+    }
+    /// Rank that projects and assembles a site.
+    unsigned int site_owner(const unsigned int site) const
+    {
+      return is_point(site) ? slave_faces_[point(site).pair][point(site).face].owner
+                            : nodes_[slave_nodes_[site].node].owner;
+    }
+    /// Reference position of a site.
+    Point site_position(unsigned int site) const;
+
+    unsigned int n_owned_slave_nodes() const
+    {
+      return n_owned_slave_nodes_;
+    }
+    /// This rank owns the site (site_owner); false for invalid numbers, too.
+    bool is_owned(const unsigned int site) const
+    {
+      return site < n_owned_slave_nodes_ || (is_point(site) && site < n_sites() && site_owner(site) == rank_);
+    }
+    /// Number of the slave node's multiplier among those of all ranks (BlockLayout).
+    DoFIndex multiplier(const unsigned int slave) const
+    {
+      return multiplier_[slave];
+    }
+    /// Number of an owned site on the whole surface that does not depend on the ranks.
+    DoFIndex order(const unsigned int site) const
+    {
+      return order_[site];
+    }
+
+    /// Arrays over slave_nodes() and over the sites.
+    const GhostExchange &slave_exchange() const
+    {
+      return slave_exchange_;
+    }
+    const GhostExchange &site_exchange() const
+    {
+      return site_exchange_;
+    }
+
+    const std::vector<SurfaceFace> &slave_faces(const unsigned int pair) const
+    {
+      return slave_faces_[pair];
+    }
+    const std::vector<SurfaceFace> &master_faces(const unsigned int pair) const
+    {
+      return master_faces_[pair];
+    }
+    /// Number of faces on all ranks.
+    unsigned int n_faces(const unsigned int pair, const SurfaceSide side) const
+    {
+      return directory_.size(pair, side);
+    }
+    /// Index into slave_nodes() of a surface node, or invalid_unsigned_int.
+    unsigned int slave_number(const unsigned int node) const
+    {
+      return node < slave_nodes_.size() ? node : dealii::numbers::invalid_unsigned_int;
+    }
+    /// Calls f(node, weight) for the free nodes that make up @p weight times the displacement of a node.
+    template <typename Function>
+    void expand(const unsigned int node, const double weight, const Function &f) const
+    {
+      if (nodes_[node].masters.empty())
+        f(node, weight);
+      else
+        for (const auto &[master, part] : nodes_[node].masters)
+          f(master, weight * part);
+    }
+    /// Active cell index of this rank's face @p number of a side.
+    unsigned int own_cell(const unsigned int pair, const SurfaceSide side, const unsigned int number) const
+    {
+      const auto &own = directory_.own(pair, side);
+      return own[number - own[0].number].cell;
+    }
+    /// Index into nodes() by the first degree of freedom; the node must be there.
+    unsigned int node(const DoFIndex first_dof) const
+    {
+      return node_of_dof_.at(first_dof);
+    }
+    /// Mean size (square root of the area) of the slave faces of a pair, reference configuration.
+    double face_size(const unsigned int pair) const
+    {
+      return face_size_[pair];
+    }
+    const BlockLayout &layout() const
+    {
+      return layout_;
+    }
+
+    /// The master of a pair without master faces, or nullptr.
+    const RigidSurface *rigid_master(const unsigned int pair) const
+    {
+      return rigid_masters_[pair].get();
+    }
+    bool has_rigid_masters() const
+    {
+      return std::any_of(rigid_masters_.begin(), rigid_masters_.end(), [](const auto &master) { return bool(master); });
+    }
+    /// Moves them to where they are at the end of an increment. @throws InputError on every rank
+    void move_rigid_masters(double begin, double end);
+    /// The same for those that a body of the model carries, to where the nodes are: @p positions of all nodes.
+    void place_carried_masters(const std::vector<Point> &positions);
+
+    /// Fetches the master faces near this rank's slave faces at displacement @p u, unless no surface node has moved
+    /// much since the last time; returns whether nodes() and master_faces() have changed. Collective.
+    bool fetch_masters(const Vector &u);
+
+    /// Values of a displacement-like vector (fully distributed) at all local nodes. Collective.
+    void gather(const Vector &v, std::vector<Vector3> &nodal_values) const;
+    /// Adds what all ranks have for their local nodes to such a vector. Collective.
+    void add(const std::vector<Vector3> &nodal_values, Vector &v) const;
+
+    /// Which components of which nodes are prescribed, those of hanging nodes when all that they follow are; whenever
+    /// the constraints have changed. Collective.
+    void set_fixed(const dealii::AffineConstraints<double> &constraints);
+    bool fixed(const unsigned int node, const unsigned int component) const
+    {
+      return fixed_[node][component];
+    }
+    const std::vector<std::array<bool, dim>> &fixed() const
+    {
+      return fixed_;
+    }
+
+    /// The bodies that move as rigid bodies driven by forces: @p numbers by body, invalid for the others.
+    void set_rigid_bodies(const std::vector<unsigned int> &numbers);
+    /// Which of these a node belongs to, or invalid_unsigned_int.
+    unsigned int rigid_body(const unsigned int node) const
+    {
+      return rigid_body_.empty() ? dealii::numbers::invalid_unsigned_int : rigid_body_[node];
+    }
+    /// Calls f(flat index, weight) for the unknowns that move component @p c of a node: its own displacement, where
+    /// that is free, or translation and spin of its rigid body, @p x being where the node is and @p centre those of the
+    /// bodies.
+    template <typename Function>
+    void for_each_unknown(const unsigned int        node,
+                          const unsigned int        c,
+                          const Point              &x,
+                          const std::vector<Point> &centre,
+                          const Function           &f) const
+    {
+      if (!fixed(node, c))
+        f(nodes_[node].dofs[c], 1.);
+      else if (const unsigned int body = rigid_body(node); body != dealii::numbers::invalid_unsigned_int)
+        for_each_rigid_unknown(body, c, 1., Vector3(x - centre[body]), f);
+    }
+    /// The same for what moves like component @p c of @p weight T + omega x @p arm.
+    template <typename Function>
+    void for_each_rigid_unknown(
+        const unsigned int body, const unsigned int c, const double weight, const Vector3 &arm, const Function &f) const
+    {
+      const unsigned int j = (c + 1) % dim, k = (c + 2) % dim;
+      f(layout_.rigid(body, c), weight);
+      f(layout_.rigid(body, dim + j), arm[k]);
+      f(layout_.rigid(body, dim + k), -arm[j]);
+    }
+
+    /// x = X + u for all nodes.
+    std::vector<Point> positions(const std::vector<Vector3> &u) const;
+
+  private:
+    std::string overlap() const;
+    std::string repeated_face() const;
+    void        measure_faces();
+    void        take_slave_faces();
+    void        take_carriers(const Bodies &bodies, const dealii::DoFHandler<dim> &dof_handler);
+    void        make_points();
+    void        number_sites();
+    void        make_layout(const dealii::IndexSet &owned_dofs);
+    void        fetch(const std::vector<Vector3> &u);
+    void        take_master_faces(const std::vector<FaceRecord> &records);
+    void        add_node(DoFIndex dof, const double *X);
+    void        add_nodes(const FaceRecord &record);
+    void        link_followers(const std::vector<FaceRecord> &records);
+    SurfaceFace make_face(const FaceRecord &record) const;
+    void        number_nodes();
+    void        gather_fixed();
+    void        find_rigid_nodes();
+
+    const std::vector<ContactPairParameters>  &pairs_;
+    MPI_Comm                                   communicator_;
+    unsigned int                               degree_, rank_;
+    FaceDirectory                              directory_;
+    std::vector<SurfaceNode>                   nodes_;
+    unsigned int                               n_slave_side_nodes_ = 0;
+    std::unordered_map<DoFIndex, unsigned int> node_of_dof_;
+    std::vector<SlaveNode>                     slave_nodes_;
+    std::vector<SlavePoint>                    slave_points_;
+    std::vector<char>                          has_points_;
+    unsigned int                               n_owned_slave_nodes_ = 0;
+    std::vector<DoFIndex>                      multiplier_; ///< of each slave node
+    std::vector<DoFIndex>                      order_;      ///< of each site, complete for owned ones
+    GhostExchange                              slave_exchange_, site_exchange_;
+    std::vector<std::vector<SurfaceFace>>      slave_faces_, master_faces_;
+    std::vector<std::unique_ptr<RigidSurface>> rigid_masters_; ///< of each pair, or nullptr
+    std::vector<double>                        face_size_;
+    Vector                                     fixed_mask_, fetched_at_; ///< fetched_at_: displacement
+    std::vector<std::array<bool, dim>>         fixed_;
+    std::vector<unsigned int>                  rigid_number_, rigid_body_; ///< by body; by node, empty without any
+    BlockLayout                                layout_;
+    // for gather() and add():
+    std::vector<unsigned int>   place_;             ///< of each node: local number as for NodeMap, owned nodes first
+    unsigned int                n_owned_nodes_ = 0; ///< of the mesh
+    GhostExchange               node_exchange_;
+    mutable std::vector<double> ghost_values_;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,164 @@
+#ifndef nodus_contact_surface_geometry_h
+#define nodus_contact_surface_geometry_h
+
+#include "contact/surface.h"
+#include <nodus/parameters/parameters.h>
+
+#include <array>
+#include <vector>
+
+namespace Nodus
+{
+  /// Derivative of a vector with respect to the position of a surface node.
+  struct NodeDerivative
+  {
+    unsigned int           node; ///< index into ContactSurfaces::nodes()
+    dealii::Tensor<2, dim> value;
+  };
+  /// Adds to the derivative with respect to @p node.
+  void add(std::vector<NodeDerivative> &derivative, unsigned int node, const dealii::Tensor<2, dim> &value);
+  /// Derivative of v/|v|.
+  dealii::Tensor<2, dim> unit_derivative(const Vector3 &v);
+
+  /// Shape of the faces of one side at given positions, with normals averaged at the nodes.
+  ///
+  /// Faces of degree 1 may be smoothed: the middle of each edge moves onto the circular arc that meets the averaged
+  /// normals of its ends, which makes the face an eight-node quadratic one (after Nagata 2005, whose patch is the same
+  /// to fourth order in the angle). Faces of degree 2 are quadratic already and stay.
+  class SurfaceGeometry
+  {
+  public:
+    /// @p fixed: prescribed components of each node. A node that is held in some but not all directions lies on a plane
+    /// of symmetry, and its averaged normal lies in that plane.
+    SurfaceGeometry(const std::vector<SurfaceFace>           &faces,
+                    unsigned int                              degree,
+                    const std::vector<Point>                 &positions,
+                    const std::vector<std::array<bool, dim>> &fixed,
+                    ContactPairParameters::Surface            surface);
+
+    unsigned int n_faces() const
+    {
+      return faces_.size();
+    }
+    const SurfaceFace &face(const unsigned int f) const
+    {
+      return faces_[f];
+    }
+    /// Degree of the displacement.
+    unsigned int degree() const
+    {
+      return degree_;
+    }
+    const std::vector<Point> &positions() const
+    {
+      return positions_;
+    }
+
+    FaceGeometry at(const unsigned int f, const double xi, const double eta) const
+    {
+      const FaceShape shape(shape_degree_, xi, eta);
+      return FaceGeometry(shape, points_.data() + f * shape.n);
+    }
+    Point position(const unsigned int f, const double xi, const double eta) const
+    {
+      const FaceShape    shape(shape_degree_, xi, eta);
+      const Point *const points = shape_points(f);
+      Point              x;
+      for (unsigned int n = 0; n < shape.n; ++n)
+        x += shape.value[n] * points[n];
+      return x;
+    }
+    /// The face is the Lagrange interpolation of these (shape_degree + 1)^2 points.
+    unsigned int shape_degree() const
+    {
+      return shape_degree_;
+    }
+    const Point *shape_points(const unsigned int f) const
+    {
+      return points_.data() + f * (shape_degree_ + 1) * (shape_degree_ + 1);
+    }
+    /// Outward unit normal of the face.
+    Vector3 normal(unsigned int f, double xi, double eta) const;
+    /// Outward unit normal interpolated from the averaged ones of the nodes.
+    Vector3 averaged_normal(unsigned int f, double xi, double eta) const;
+    /// Smoothed position minus the one that the displacement shape functions give; zero when faceted.
+    Vector3 offset(unsigned int f, double xi, double eta) const;
+
+    /// Averaged outward unit normal of node @p n of face @p f: of the faces at the node within 45 degrees of this one,
+    /// with weights that make it exact on spheres and cylinders (Max 1999). At a hanging node it is interpolated, as on
+    /// the larger face beside it.
+    const Vector3 &nodal_normal(const unsigned int f, const unsigned int n) const
+    {
+      return nodal_normals_[f * faces_[f].nodes.size() + n];
+    }
+
+    bool smoothed() const
+    {
+      return shape_degree_ != degree_;
+    }
+    /// The offset is the sum over the middles of the four edges and the four corners, which move only where they hang,
+    /// of a function of (xi, eta) times the offset there, and its derivative with respect to the nodes likewise.
+    static std::array<double, 8> offset_functions(double xi, double eta);
+    std::vector<NodeDerivative>  offset_derivative(unsigned int f, unsigned int part) const;
+
+    /// Add to @p derivative that of the normals with respect to the nodes, at fixed local coordinates. That of the face
+    /// normal leaves the smoothing out.
+    void normal_derivative(unsigned int f, double xi, double eta, std::vector<NodeDerivative> &derivative) const;
+    void
+    averaged_normal_derivative(unsigned int f, double xi, double eta, std::vector<NodeDerivative> &derivative) const;
+    void nodal_normal_derivative(unsigned int f, unsigned int n, std::vector<NodeDerivative> &derivative) const;
+
+  private:
+    const std::vector<SurfaceFace>           &faces_;
+    const std::vector<Point>                 &positions_;
+    const std::vector<std::array<bool, dim>> &fixed_; ///< components of each node
+    unsigned int                              degree_, shape_degree_;
+    std::vector<Vector3>                      unit_, nodal_normals_; ///< per face and node: of the face, averaged
+    /// Where each surface node occurs: face * nodes per face + n, from start_[node] on.
+    std::vector<unsigned int> start_, occurrence_;
+    std::vector<FaceShape>    node_shapes_; ///< of the displacement at the nodes of a face
+    std::vector<Point>        points_;      ///< per face, (shape_degree + 1)^2
+    std::vector<Vector3>      offsets_;     ///< of these, where the surface is smoothed
+
+    void average_normals();
+    /// Calls g(face, shape there) for the faces around a surface node that belong to one smooth
+    /// surface with a face of normal @p unit.
+    template <typename Function>
+    void for_faces(unsigned int node, const Vector3 &unit, const Function &g) const;
+    /// Sum of the weighted normals of these.
+    Vector3 sum_of_normals(unsigned int node, const Vector3 &unit) const;
+    /// The unit vector of that, in the plane of symmetry where the node lies on one; zero when there are no such faces.
+    Vector3 averaged_unit(unsigned int node, const Vector3 &unit) const;
+    /// Of node n of face f where it hangs: interpolated from those of the nodes that it follows; zero for others, and
+    /// beyond sharp edges.
+    Vector3 interpolated_direction(unsigned int f, unsigned int n) const;
+    void    add_sum_derivative(unsigned int                  node,
+                               const Vector3                &unit,
+                               const dealii::Tensor<2, dim> &factor,
+                               std::vector<NodeDerivative>  &derivative) const;
+    void    add_unit_derivative(unsigned int                  node,
+                                const Vector3                &unit,
+                                const dealii::Tensor<2, dim> &factor,
+                                std::vector<NodeDerivative>  &derivative) const;
+    bool    on_symmetry_plane(unsigned int node, const Vector3 &normal) const;
+
+    void smooth();
+    /// Of node n of face f where it hangs in the middle of an edge of a larger face, or nullptr.
+    const SurfaceFace::Follower *on_larger_edge(unsigned int f, unsigned int n) const;
+    /// Normal at an end of that edge.
+    Vector3 end_normal(unsigned int f, unsigned int n, unsigned int master) const;
+    /// Whether the edge to another corner is half of that edge.
+    bool is_half(unsigned int f, unsigned int end, unsigned int other) const;
+    /// Smoothed position minus position of a corner: one that hangs is in the middle of the larger face's smoothed
+    /// edge.
+    Vector3 corner_offset(unsigned int f, unsigned int n) const;
+    /// The same of the middle of the edge from corner a to corner b.
+    Vector3 middle_offset(unsigned int f, unsigned int a, unsigned int b) const;
+    void    corner_offset_derivative(unsigned int                  f,
+                                     unsigned int                  n,
+                                     const dealii::Tensor<2, dim> &factor,
+                                     std::vector<NodeDerivative>  &derivative) const;
+  };
+} // namespace Nodus
+
+#endif

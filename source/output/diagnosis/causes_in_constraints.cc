@@ -1,0 +1,169 @@
+#include "output/diagnosis/suspected_causes.h"
+
+#include <algorithm>
+#include <cmath>
+
+// Systems that have no unique solution: motions that nothing resists, and constraints that repeat others.
+
+namespace Nodus
+{
+  namespace Suspects
+  {
+    namespace
+    {
+      /// A subsection to append to the case.
+      std::string spring_condition(const unsigned int number, const FailureEvidence::Spring &spring)
+      {
+        std::string components;
+        for (unsigned int c = 0; c < dim; ++c)
+          if (spring.components[c])
+            components += (components.empty() ? "" : ", ") + std::string(1, "xyz"[c]);
+        return text("subsection Boundary condition ",
+                    number,
+                    "\n  set Name         = soft spring ",
+                    spring.body + 1,
+                    "\n  set Type         = spring\n  set Body         = ",
+                    spring.body + 1,
+                    "\n  set Boundary ids = ",
+                    spring.boundary_id,
+                    "\n  set Components   = ",
+                    components,
+                    "\n  set Value        = ",
+                    std::setprecision(2),
+                    spring.stiffness,
+                    "\nend\n");
+      }
+
+    } // namespace
+
+    void
+    add_free_body(const Parameters &parameters, const History &history, const FailureEvidence &evidence, Causes &causes)
+    {
+      SuspectedCause cause{"a body can move freely", {}, {}};
+      if (evidence.kind == Kind::free_body)
+        cause.evidence.push_back("the linear solver met a null pivot of a displacement");
+      for (const std::string &motion : evidence.free_motions)
+        cause.evidence.push_back("no prescribed displacement, spring or closed contact resists this: " + motion);
+      for (unsigned int p = 0; p < evidence.pairs.size(); ++p)
+      {
+        const auto &pair = evidence.pairs[p];
+        cause.evidence.push_back(text(pair_name(parameters, p),
+                                      ": ",
+                                      pair.closed,
+                                      " of ",
+                                      pair.sites,
+                                      " sites are closed, ",
+                                      pair.slipping,
+                                      " of these slip or have no friction"));
+      }
+      const bool open =
+          std::none_of(evidence.pairs.begin(), evidence.pairs.end(), [](const auto &pair) { return pair.closed > 0; });
+      std::vector<SuspectedCause::Change> springs;
+      unsigned int                        next = parameters.boundary_conditions.size();
+      for (const FailureEvidence::Spring &spring : evidence.springs)
+      {
+        ++next;
+        springs.push_back({text("Boundary condition ", next),
+                           "does not exist",
+                           text("a soft spring on ", body_name(parameters, spring.body)),
+                           "resists the motions above; or hold these components (Type = displacement)",
+                           {},
+                           spring_condition(next, spring)});
+      }
+      if (!open)
+        cause.changes = springs;
+      for (unsigned int p = 0; p < evidence.pairs.size(); ++p)
+      {
+        const auto &pair = parameters.contact_pairs[p];
+        if (evidence.pairs[p].closed == 0 && history.increment == 1 && evidence.left_free.empty() &&
+            pair.initial_status != ContactPairParameters::InitialStatus::closed)
+          cause.changes.push_back(
+              {in_pair(p, "Initial status"),
+               pair.initial_status == ContactPairParameters::InitialStatus::open ? "open" : "by gap",
+               "closed",
+               "the contact holds the body from the start"});
+      }
+      if (const auto &load = parameters.load_stepping; load.viscous_stabilisation == 0.)
+      {
+        SuspectedCause::Change change{
+            "Load stepping/Viscous stabilisation", "0", "0.01", "dashpots hold the body until contact does"};
+        auto increments = load.increments; // dashpots fade in the course of each interval
+        std::replace(increments.begin(), increments.end(), 1u, 4u);
+        if (increments != load.increments)
+          change.together.emplace_back("Increments", as_list(increments));
+        cause.changes.push_back(change);
+      }
+      if (open) // where a load closes the gap a soft spring is no match for it
+        cause.changes.insert(cause.changes.end(), springs.begin(), springs.end());
+      for (unsigned int p = 0; p < evidence.pairs.size(); ++p)
+      {
+        const auto &pair = parameters.contact_pairs[p];
+        if (evidence.pairs[p].closed > 0 && pair.friction_law == ContactPairParameters::FrictionLaw::coulomb &&
+            pair.friction_coefficient == 0. && pair.contact_law != ContactPairParameters::ContactLaw::tied)
+          cause.changes.push_back({in_pair(p, "Friction coefficient"),
+                                   "0",
+                                   "0.1",
+                                   history.increment == 1
+                                       ? "friction holds what the normals leave free, but only once there is pressure: "
+                                         "besides a spring or stabilisation"
+                                       : "friction holds what the normals leave free"});
+      }
+      causes.push_back(cause);
+    }
+
+    void add_over_constraint(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes)
+    {
+      const auto    &constraint = evidence.constraint;
+      SuspectedCause cause{"a contact constraint repeats another constraint", {}, {}};
+      if (constraint.pair < parameters.contact_pairs.size())
+      {
+        std::string held;
+        for (unsigned int c = 0; c < dim; ++c)
+          if (constraint.prescribed[c])
+            held += (held.empty() ? "" : ", ") + std::string(1, "xyz"[c]);
+        cause.evidence.push_back(text("null pivot of the ",
+                                      constraint.friction ? "friction" : "contact",
+                                      " multiplier of the slave node at (",
+                                      constraint.X,
+                                      ") of ",
+                                      pair_name(parameters, constraint.pair),
+                                      ", normal (",
+                                      constraint.normal,
+                                      ')'));
+        cause.evidence.push_back("components of its displacement that are prescribed: " +
+                                 (held.empty() ? "none" : held));
+        const auto &pair = parameters.contact_pairs[constraint.pair];
+        for (unsigned int q = 0; q < parameters.contact_pairs.size(); ++q)
+          if (const auto &other = parameters.contact_pairs[q];
+              q != constraint.pair && other.slave.body == pair.master.body && other.master.body == pair.slave.body)
+          {
+            cause.evidence.push_back(pair_name(parameters, q) + " has the same bodies with slave and master exchanged");
+            cause.changes.push_back({text("Contact pair ", q + 1), "exists", "nothing", "leave this pair out"});
+          }
+        const std::string hole = text("(x - ",
+                                      constraint.X[0],
+                                      ")^2 + (y - ",
+                                      constraint.X[1],
+                                      ")^2 + (z - ",
+                                      constraint.X[2],
+                                      ")^2 > ",
+                                      std::pow(evidence.pairs[constraint.pair].face_size, 2));
+        cause.changes.push_back({in_pair(constraint.pair, "Slave where"),
+                                 pair.slave.where.empty() ? "empty" : pair.slave.where,
+                                 hole,
+                                 "leaves the faces around this node out"});
+        if (!pair.has_rigid_master())
+          cause.changes.push_back({in_pair(constraint.pair, "Slave body"),
+                                   text(pair.slave.body),
+                                   text(pair.master.body),
+                                   "slave and master change places, with their boundary ids",
+                                   {{"Slave boundary ids", as_list(pair.master.boundary_ids)},
+                                    {"Slave where", pair.master.where},
+                                    {"Master body", text(pair.slave.body)},
+                                    {"Master boundary ids", as_list(pair.slave.boundary_ids)},
+                                    {"Master where", pair.slave.where}}});
+      }
+      causes.push_back(cause);
+    }
+  } // namespace Suspects
+} // namespace Nodus

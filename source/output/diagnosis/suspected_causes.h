@@ -1,0 +1,68 @@
+#ifndef nodus_output_diagnosis_suspected_causes_h
+#define nodus_output_diagnosis_suspected_causes_h
+
+#include "output/diagnosis/diagnosis.h"
+
+#include <iomanip>
+#include <sstream>
+
+namespace Nodus
+{
+  /// What the functions that find causes share, one function for each cause.
+  namespace Suspects
+  {
+    using Kind    = SolverFailure::Kind;
+    using Mode    = LoopParameters::Mode;
+    using History = Diagnosis::History;
+    using Causes  = std::vector<SuspectedCause>;
+
+    /// Residuals that fall by this factor or less from one iteration or pass to the next do not converge.
+    constexpr double no_contraction = 0.9;
+
+    template <typename... Parts>
+    std::string text(const Parts &...parts)
+    {
+      std::ostringstream stream;
+      stream << std::setprecision(4);
+      (stream << ... << parts);
+      return stream.str();
+    }
+
+    std::string joined(const std::vector<double> &values);
+    std::string in_pair(const unsigned int pair, const std::string &key);
+    std::string pair_name(const Parameters &parameters, const unsigned int pair);
+    std::string body_name(const Parameters &parameters, const unsigned int body);
+    /// Geometric mean of the ratios of the last few values; 1 for fewer than two.
+    double              contraction(const std::vector<double> &values);
+    std::vector<double> last_of(const std::vector<double> &values, const std::size_t n);
+    std::string         as_list(const std::vector<unsigned int> &values);
+    /// Smaller increments, in the terms of the user.
+    void add_smaller_increments(const Parameters &parameters, const History &history, SuspectedCause &cause);
+    void add_line_search(const Parameters &parameters, SuspectedCause &cause);
+    void add_newton_mode(const std::string &loop, const LoopParameters &parameters, SuspectedCause &cause);
+    void add_more_passes(const std::string &key,
+                         const unsigned int now,
+                         const double       rate,
+                         const double       residual,
+                         const double       tolerance,
+                         SuspectedCause    &cause);
+    /// Motions that nothing resists.
+    void add_free_body(const Parameters      &parameters,
+                       const History         &history,
+                       const FailureEvidence &evidence,
+                       Causes                &causes);
+    void add_over_constraint(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
+    /// Statuses that come and go.
+    void add_status_cycle(const Parameters      &parameters,
+                          const History         &history,
+                          const FailureEvidence &evidence,
+                          Causes                &causes);
+    void add_threshold_loop(const Parameters &parameters, const History &history, Causes &causes);
+    void add_geometry_loop(const Parameters      &parameters,
+                           const History         &history,
+                           const FailureEvidence &evidence,
+                           Causes                &causes);
+  } // namespace Suspects
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,82 @@
+#ifndef nodus_output_tables_h
+#define nodus_output_tables_h
+
+#include "output/energies.h"
+#include "solve/newton.h"
+#include <nodus/base/types.h>
+#include <nodus/contact/contact_fields.h>
+
+#include <mpi.h>
+
+#include <string>
+#include <vector>
+
+namespace Nodus
+{
+  /// contact.csv (one row per increment and pair), reactions.csv (one row per increment and displacement condition),
+  /// rigid_bodies.csv (one row per increment and rigid body with free components, if there are any), energy.csv (one
+  /// row per increment) and convergence.csv (one row per Newton iteration), rewritten as a whole after each increment
+  /// (temporary name, then rename) by rank 0.
+  class Tables
+  {
+  public:
+    /// Collective. @throws InputError when the folder cannot be created or written.
+    Tables(const std::string &folder, MPI_Comm communicator);
+
+    struct Reaction
+    {
+      std::string name;
+      Vector3     force; ///< of the ground on the bodies
+    };
+
+    /// All arguments are global values, the same on every rank. Collective. @throws InputError as the constructor.
+    void add(unsigned int                          increment,
+             double                                t,
+             const std::vector<ContactResultants> &contact,
+             const std::vector<Reaction>          &reactions,
+             const std::vector<RigidBodyMotion>   &rigid_bodies,
+             const Energies                       &energies,
+             const IterationCounts                &counts);
+
+    /// One iterate of Newton's method, kept until the next add() or add_failure().
+    struct Iteration
+    {
+      unsigned int         increment;
+      double               t;
+      IterationCounts      pass;      ///< numbers of the geometry, threshold and status pass; fallbacks so far
+      unsigned int         iteration; ///< 0: before the first correction
+      NewtonProblem::Norms norms;
+      unsigned int         krylov; ///< iterations of the correction that led here
+    };
+    void add(const Iteration &iteration);
+    /// Statuses that the status loop changed after the last iterate.
+    void add_status_changes(unsigned int n);
+
+    /// Writes the iterations of an increment that did not converge. Collective. @throws InputError as the constructor.
+    void add_failure();
+
+    struct Rows
+    {
+      std::string contact, reactions, energies, iterations; ///< with the headers
+      std::string rigid_bodies;                             ///< likewise, empty without any
+    };
+    const Rows &rows() const
+    {
+      return rows_;
+    }
+    /// Writes the tables as they were when they had these @p rows. Collective. @throws InputError as the constructor.
+    void continue_from(const Rows &rows);
+
+  private:
+    void write() const;
+    void write(const std::string &name, const std::string &rows) const;
+    void finish_iterations();
+
+    std::string            folder_;
+    MPI_Comm               communicator_;
+    std::vector<Iteration> iterations_;
+    Rows                   rows_;
+  };
+} // namespace Nodus
+
+#endif

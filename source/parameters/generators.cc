@@ -1,0 +1,308 @@
+#include "parameters/generators.h"
+#include "base/suggestion.h"
+
+#include <deal.II/base/utilities.h>
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/tria.h>
+
+#include <algorithm>
+#include <regex>
+
+namespace Nodus
+{
+  namespace Generators
+  {
+    namespace
+    {
+      enum class Kind
+      {
+        number,
+        positive,
+        whole,
+        natural,
+        point,
+        points,
+        cells,
+        steps,
+        wholes,
+        choice
+      };
+
+      struct Argument
+      {
+        const char *meaning;
+        Kind        kind;
+        const char *usual = ""; ///< the default of deal.II's function
+      };
+
+      struct Generator
+      {
+        const char           *name;
+        std::vector<Argument> arguments;
+        const char           *example;
+      };
+
+      const Argument colorize = {"whether the sides have ids of their own", Kind::choice, "true"};
+      const Argument left     = {"smallest coordinate", Kind::number, "0"},
+                     right    = {"largest coordinate", Kind::number, "1"};
+      const Argument centre = {"centre", Kind::point, "0,0,0"}, radius = {"radius", Kind::positive, "1"};
+      const Argument inner = {"inner radius", Kind::positive}, outer = {"outer radius", Kind::positive};
+      const Argument half_length = {"half of the length along x", Kind::positive, "1"};
+
+      /// In the order of how often they serve.
+      const std::vector<Generator> &table()
+      {
+        static const std::vector<Generator> all = {
+            {"subdivided_hyper_rectangle",
+             {{"cells along x, y, z", Kind::steps},
+              {"a corner", Kind::point},
+              {"the corner opposite to it", Kind::point},
+              colorize},
+             "3,3,2 : 0,0,0 : 1,1,1 : true"},
+            {"hyper_rectangle",
+             {{"a corner", Kind::point}, {"the corner opposite to it", Kind::point}, colorize},
+             "0,0,0 : 2,1,1 : true"},
+            {"hyper_cube", {left, right, colorize}, "0 : 1 : true"},
+            {"subdivided_hyper_cube",
+             {{"cells along each edge", Kind::natural}, left, right, colorize},
+             "4 : 0 : 1 : true"},
+            {"cylinder", {radius, half_length}, "0.5 : 2"},
+            {"cylinder_shell",
+             {{"length along z, from z = 0", Kind::positive},
+              inner,
+              outer,
+              {"cells around; 0: as many as make cells even", Kind::whole, "0"},
+              {"cells along z; 0: likewise", Kind::whole, "0"}},
+             "1 : 0.5 : 1 : 16 : 2"},
+            {"truncated_cone",
+             {{"radius at x-", Kind::positive, "1"}, {"radius at x+", Kind::positive, "0.5"}, half_length},
+             "1 : 0.5 : 1"},
+            {"hyper_ball",
+             {centre, radius, {"whether cells at the surface alone are curved", Kind::choice, "false"}},
+             "0,0,0 : 1 : false"},
+            {"half_hyper_ball", {centre, radius}, "0,0,0 : 1"},
+            {"quarter_hyper_ball", {centre, radius}, "0,0,0 : 1"},
+            {"hyper_shell",
+             {centre,
+              inner,
+              outer,
+              {"cells: 6, 12 or 96, or, without ids of their own, 24 or 48; 0: 6", Kind::whole, "0"},
+              colorize},
+             "0,0,0 : 0.5 : 1 : 12 : true"},
+            {"half_hyper_shell",
+             {centre, inner, outer, {"cells: 0 (as many as there are)", Kind::whole, "0"}, colorize},
+             "0,0,0 : 0.5 : 1 : 0 : true"},
+            {"quarter_hyper_shell",
+             {centre, inner, outer, {"cells: 0 (as many as there are)", Kind::whole, "0"}, colorize},
+             "0,0,0 : 0.5 : 1 : 0 : true"},
+            {"concentric_hyper_shells",
+             {centre,
+              inner,
+              outer,
+              {"layers", Kind::natural, "1"},
+              {"grading of the layers; 0: none", Kind::number, "0"},
+              {"cells of a layer: 6 or 12; 0: 12", Kind::whole, "0"},
+              colorize},
+             "0,0,0 : 0.5 : 1 : 2 : 0 : 0 : true"},
+            {"hyper_cube_with_cylindrical_hole",
+             {{"radius of the hole", Kind::positive, "0.25"},
+              {"half of the edge", Kind::positive, "0.5"},
+              {"thickness along z", Kind::positive, "0.5"},
+              {"cells along z", Kind::natural, "1"},
+              colorize},
+             "0.25 : 0.5 : 0.5 : 1 : true"},
+            {"plate_with_a_hole",
+             {{"radius of the hole", Kind::positive, "0.4"},
+              {"half of the edge of the square around it", Kind::positive, "1"},
+              {"what is added at y-", Kind::number, "2"},
+              {"what is added at y+", Kind::number, "2"},
+              {"what is added at x-", Kind::number, "1"},
+              {"what is added at x+", Kind::number, "1"},
+              {"centre of the hole", Kind::point, "0,0,0"},
+              {"a number for the round manifold", Kind::whole, "0"},
+              {"another number for that around it", Kind::whole, "1"},
+              {"thickness along z", Kind::positive, "1"},
+              {"layers of nodes along z", Kind::natural, "2"},
+              colorize},
+             "0.4 : 1 : 2 : 2 : 1 : 1 : 0,0,0 : 0 : 1 : 1 : 2 : true"},
+            {"enclosed_hyper_cube",
+             {left, right, {"thickness of the layer around the cube", Kind::positive, "1"}, colorize},
+             "0 : 1 : 0.5 : true"},
+            {"hyper_L", {left, right, colorize}, "-1 : 1 : true"},
+            {"hyper_cross",
+             {{"cells of the six arms: x-, x+, y-, y+, z-, z+", Kind::wholes},
+              {"whether the cells have ids of their own", Kind::choice, "false"}},
+             "1,1,1,1,1,1 : false"},
+            {"cheese", {{"holes along x, y, z", Kind::cells}}, "2,2,2"},
+            {"torus",
+             {{"radius of the centre line, about the y axis", Kind::positive},
+              {"radius of the tube", Kind::positive},
+              {"cells along the centre line", Kind::natural, "6"},
+              {"angle of the torus in radians", Kind::positive, "6.283185307179586"}},
+             "1 : 0.3 : 6 : 6.283185307179586"},
+            {"moebius",
+             {{"cells along the loop", Kind::natural},
+              {"quarters of a turn", Kind::whole},
+              {"radius of the loop", Kind::positive},
+              {"radius of the section", Kind::positive}},
+             "12 : 2 : 2 : 0.5"},
+            {"general_cell",
+             {{"eight vertices separated by ';'", Kind::points}, colorize},
+             "0,0,0; 1,0,0; 0,1,0; 1,1,0; 0,0,1; 1,0,1; 0,1,1; 1,1,1 : true"}};
+        return all;
+      }
+
+      const Generator *find(const std::string &name)
+      {
+        const auto found =
+            std::find_if(table().begin(), table().end(), [&](const Generator &g) { return g.name == name; });
+        return found == table().end() ? nullptr : &*found;
+      }
+
+      std::string in_words(const Kind kind)
+      {
+        switch (kind)
+        {
+          case Kind::number:
+            return "a number";
+          case Kind::positive:
+            return "a number > 0";
+          case Kind::whole:
+            return "a whole number >= 0";
+          case Kind::natural:
+            return "a whole number > 0";
+          case Kind::point:
+            return "x,y,z";
+          case Kind::points:
+            return "x,y,z; x,y,z; ...";
+          case Kind::cells:
+            return "three whole numbers > 0 separated by ','";
+          case Kind::steps:
+            return "three whole numbers > 0 separated by ',', or for each direction the widths of the cells, e.g. "
+                   "0.5,0.5; 1; 1";
+          case Kind::wholes:
+            return "six whole numbers >= 0 separated by ','";
+          case Kind::choice:
+            break;
+        }
+        return "true or false";
+      }
+
+      /// Whether @p text is a list of @p n (0: any number of) what @p is says.
+      template <typename Predicate>
+      bool is_list(const std::string &text, const char separator, const std::size_t n, const Predicate &is)
+      {
+        const auto items = dealii::Utilities::split_string_list(text, separator);
+        return (n == 0 || items.size() == n) && std::all_of(items.begin(), items.end(), is);
+      }
+
+      bool is_number(const std::string &text)
+      {
+        try
+        {
+          dealii::Utilities::string_to_double(text);
+          return true;
+        }
+        catch (const std::exception &)
+        {
+          return false;
+        }
+      }
+
+      bool is_of(const Kind kind, const std::string &text)
+      {
+        const auto positive = [](const std::string &t)
+        { return is_number(t) && dealii::Utilities::string_to_double(t) > 0.; };
+        const auto whole   = [](const std::string &t) { return std::regex_match(t, std::regex("\\d{1,9}")); };
+        const auto natural = [&](const std::string &t) { return whole(t) && positive(t); };
+        const auto point   = [](const std::string &t) { return is_list(t, ',', 3, is_number); };
+        const auto widths  = [&](const std::string &t) { return is_list(t, ',', 0, positive); };
+        switch (kind)
+        {
+          case Kind::number:
+            return is_number(text);
+          case Kind::positive:
+            return positive(text);
+          case Kind::whole:
+            return whole(text);
+          case Kind::natural:
+            return natural(text);
+          case Kind::point:
+            return point(text);
+          case Kind::points:
+            return is_list(text, ';', 8, point);
+          case Kind::cells:
+            return is_list(text, ',', 3, natural);
+          case Kind::steps:
+            return is_list(text, ',', 3, natural) || is_list(text, ';', 3, widths);
+          case Kind::wholes:
+            return is_list(text, ',', 6, whole);
+          case Kind::choice:
+            break;
+        }
+        return text == "true" || text == "false";
+      }
+    } // namespace
+
+    std::vector<std::string> names()
+    {
+      std::vector<std::string> list;
+      for (const Generator &generator : table())
+        list.push_back(generator.name);
+      return list;
+    }
+
+    std::string arguments(const std::string &name)
+    {
+      std::string text;
+      for (const Argument &argument : find(name)->arguments)
+        text += (text.empty() ? "" : " : ") + std::string(argument.meaning) + " (" + in_words(argument.kind) +
+                (*argument.usual == '\0' ? "" : std::string("; usually ") + argument.usual) + ')';
+      return text;
+    }
+
+    std::string example(const std::string &name)
+    {
+      return find(name)->example;
+    }
+
+    std::string mistake_in_name(const std::string &name)
+    {
+      if (find(name) != nullptr)
+        return "";
+      // Versions of deal.II differ in what they have, and say so of names only when they are asked for a mesh.
+      try
+      {
+        dealii::Triangulation<3> mesh;
+        dealii::GridGenerator::generate_from_name_and_arguments(mesh, name, "");
+      }
+      catch (const std::exception &error)
+      {
+        if (std::string(error.what()).find("not implemented") != std::string::npos)
+          return "is '" + name + "', which is no generator of hexahedra" + suggestion(name, names());
+      }
+      return "";
+    }
+
+    std::string mistake_in_arguments(const std::string &name, const std::string &text)
+    {
+      const Generator *const generator = find(name);
+      if (generator == nullptr)
+        return "";
+      const auto        given    = dealii::Utilities::split_string_list(text, ':');
+      const auto       &expected = generator->arguments;
+      const std::size_t n        = expected.size();
+      std::string       wrong;
+      if (given.size() != n)
+        wrong = "has " + std::to_string(given.size()) + (given.size() == 1 ? " argument" : " arguments") + ", but " +
+                name + " takes " + std::to_string(n);
+      for (std::size_t i = 0; i < n && wrong.empty(); ++i)
+        if (!is_of(expected[i].kind, given[i]))
+          wrong = "has '" + given[i] + "' for argument " + std::to_string(i + 1) + " of " + name + ", " +
+                  expected[i].meaning + ", which must be " + in_words(expected[i].kind);
+      if (!wrong.empty())
+        wrong += "; give, separated by ':', " + arguments(name) + "; for example " + generator->example;
+      return wrong;
+    }
+  } // namespace Generators
+} // namespace Nodus

@@ -1,0 +1,30 @@
+#ifndef nodus_parameters_generators_h
+#define nodus_parameters_generators_h
+
+#include <string>
+#include <vector>
+
+// The functions of deal.II's GridGenerator that make hexahedra from numbers in a file: their arguments in words.
+
+namespace Nodus
+{
+  namespace Generators
+  {
+    std::vector<std::string> names();
+
+    /// "radius (a number > 0; usually 1) : half of the length along x (...)".
+    std::string arguments(const std::string &name);
+
+    /// Arguments that work.
+    std::string example(const std::string &name);
+
+    /// What is wrong with the name; empty when deal.II has it.
+    std::string mistake_in_name(const std::string &name);
+
+    /// What is wrong with number and kind of the arguments, which stand between ':'; empty when nothing is, or when
+    /// the generator is one that names() does not have.
+    std::string mistake_in_arguments(const std::string &name, const std::string &text);
+  } // namespace Generators
+} // namespace Nodus
+
+#endif

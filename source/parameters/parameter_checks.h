@@ -1,0 +1,54 @@
+#ifndef nodus_parameters_parameter_checks_h
+#define nodus_parameters_parameter_checks_h
+
+#include "parameters/parameter_file.h"
+#include <nodus/parameters/parameters.h>
+
+#include <string>
+
+// What the files that check the values of a .prm file share.
+
+namespace Nodus
+{
+  namespace ParameterChecks
+  {
+    /// A subsection under inspection.
+    struct Section
+    {
+      const ParameterFile &file;
+      std::string          name;
+
+      void require(const bool satisfied, const std::string &key, const std::string &message) const
+      {
+        if (!satisfied)
+          file.refuse(name, key, message);
+      }
+    };
+
+    /// @p variables: "x,y,z", and perhaps a fourth one, or "t" alone.
+    void check_expression(const Section     &section,
+                          const std::string &key,
+                          const std::string &text,
+                          const std::string &variables);
+
+    void check(const Section          &section,
+               const RegionParameters &region,
+               const std::string      &prefix,
+               unsigned int            n_bodies,
+               unsigned int            smallest_body);
+
+    /// @p axis: about which the motion turns where it names none.
+    void check(const Section                    &section,
+               const PrescribedMotionParameters &motion,
+               const std::string                &prefix,
+               const Vector3                    &axis);
+    bool is_given(const PrescribedMotionParameters &motion);
+
+    /// Different predicates may separate faces of one id; the mesh will tell.
+    bool share_faces(const RegionParameters &a, const RegionParameters &b);
+
+    void check(const Section &section, const ContactPairParameters &pair, unsigned int n_bodies);
+  } // namespace ParameterChecks
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,562 @@
+#include "parameters/generators.h"
+#include "parameters/parameter_file.h"
+#include "parameters/parameter_keys.h"
+#include <nodus/parameters/parameters.h>
+
+#include <deal.II/base/utilities.h>
+
+#include <filesystem>
+#include <limits>
+
+// One line per key: its text, the member it sets, the pattern of its values and what it means.
+
+namespace Nodus
+{
+  namespace
+  {
+    using namespace ParameterKeys;
+
+    const Names<MaterialParameters::Law> law_names = {
+        {MaterialParameters::Law::linear_elastic, "linear elastic"},
+        {MaterialParameters::Law::st_venant_kirchhoff, "St Venant-Kirchhoff"},
+        {MaterialParameters::Law::neo_hookean, "neo-Hookean"},
+        {MaterialParameters::Law::mooney_rivlin, "Mooney-Rivlin"},
+        {MaterialParameters::Law::ogden, "Ogden"},
+        {MaterialParameters::Law::j2_plasticity, "J2 plasticity"}};
+
+    const Names<BodyParameters::VolumetricTreatment> treatment_names = {
+        {BodyParameters::VolumetricTreatment::standard, "standard"},
+        {BodyParameters::VolumetricTreatment::mean_dilatation, "mean dilatation"}};
+
+    const Names<BoundaryConditionParameters::Type> type_names = {
+        {BoundaryConditionParameters::Type::displacement, "displacement"},
+        {BoundaryConditionParameters::Type::traction, "traction"},
+        {BoundaryConditionParameters::Type::pressure, "pressure"},
+        {BoundaryConditionParameters::Type::body_force, "body force"},
+        {BoundaryConditionParameters::Type::spring, "spring"}};
+
+    const Names<LoopParameters::Mode> mode_names = {{LoopParameters::Mode::fixed_point, "fixed point"},
+                                                    {LoopParameters::Mode::newton, "newton"}};
+
+    const Names<LinearSolverParameters::Type> solver_names = {{LinearSolverParameters::Type::automatic, "automatic"},
+                                                              {LinearSolverParameters::Type::direct, "direct"},
+                                                              {LinearSolverParameters::Type::block, "block"},
+                                                              {LinearSolverParameters::Type::condensed, "condensed"}};
+
+    const Names<AdaptivityParameters::Marking> marking_names = {
+        {AdaptivityParameters::Marking::fixed_fraction, "fixed fraction"},
+        {AdaptivityParameters::Marking::target_error, "target error"}};
+
+    const Names<unsigned int> component_names       = {{0, "x"}, {1, "y"}, {2, "z"}};
+    const Names<unsigned int> rigid_component_names = {{0, "x"}, {1, "y"}, {2, "z"}, {3, "rx"}, {4, "ry"}, {5, "rz"}};
+
+    /// Components by name, axes x, y, z as 0, 1, 2.
+    void add_components(ParameterHandler          &prm,
+                        const std::string         &key,
+                        std::vector<unsigned int> &components,
+                        const std::string         &documentation,
+                        const Names<unsigned int> &names = component_names)
+    {
+      std::string default_text;
+      for (const unsigned int c : components)
+        default_text += (default_text.empty() ? "" : ", ") + names[c].second;
+      prm.declare_entry(
+          key, default_text, Patterns::List(Patterns::Selection(selection(names)), 0, names.size()), documentation);
+      prm.add_action(key,
+                     [&components, &names](const std::string &text)
+                     {
+                       components.clear();
+                       for (const auto &name : dealii::Utilities::split_string_list(text, ','))
+                         components.push_back(value_of(name, names));
+                     });
+    }
+
+    void add(ParameterHandler &prm, MaterialParameters &material)
+    {
+      add_choice(
+          prm,
+          "Law",
+          material.law,
+          law_names,
+          "Law of the material [-]. All but the first are finite-strain laws; J2 plasticity is elastoplastic with "
+          "isotropic hardening, in logarithmic strains and Kirchhoff stresses.");
+      prm.add_parameter(
+          "Young's modulus",
+          material.youngs_modulus,
+          "Young's modulus of the undeformed material [pressure], > 0. Must be given, but for Ogden, where "
+          "it is (1 + nu) times the sum of the products of moduli and exponents.",
+          not_negative);
+      prm.add_parameter("Poisson's ratio",
+                        material.poissons_ratio,
+                        "Poisson's ratio of the undeformed material [-], > -1 and < 0.5. From 0.45 on low-order cells "
+                        "lock: see Volumetric treatment.",
+                        any_number);
+      prm.add_parameter("Mooney-Rivlin ratio",
+                        material.mooney_rivlin_ratio,
+                        "Ratio of the second to the first constant of the Mooney-Rivlin law [-]; 0 is neo-Hookean.",
+                        not_negative);
+      prm.add_parameter("Ogden moduli",
+                        material.ogden_moduli,
+                        "Moduli mu_i of the terms mu_i/alpha_i (sum of isochoric stretches^alpha_i - 3) of Ogden's law "
+                        "[pressure]. Half the sum of mu_i alpha_i is the initial shear modulus.",
+                        numbers);
+      prm.add_parameter("Ogden exponents",
+                        material.ogden_exponents,
+                        "Exponents alpha_i of Ogden's law [-], one for each modulus, not 0.",
+                        numbers);
+      prm.add_parameter("Yield stress",
+                        material.yield_stress,
+                        "J2 plasticity: initial yield stress [pressure], > 0. Must be given, or the hardening table.",
+                        not_negative);
+      prm.add_parameter("Hardening modulus",
+                        material.hardening_modulus,
+                        "J2 plasticity: linear hardening, yield stress over equivalent plastic strain [pressure].",
+                        not_negative);
+      prm.add_parameter(
+          "Saturation stress",
+          material.saturation_stress,
+          "J2 plasticity: yield stress that Voce's exponential hardening tends to, without the linear part "
+          "[pressure]; 0: no such hardening.",
+          not_negative);
+      prm.add_parameter("Saturation rate",
+                        material.saturation_rate,
+                        "J2 plasticity: factor of the equivalent plastic strain in the exponential [-].",
+                        not_negative);
+      prm.add_parameter("Hardening strains",
+                        material.hardening_strains,
+                        "J2 plasticity: equivalent plastic strains of a hardening table [-], the first 0, increasing; "
+                        "the yield stress is linear in between and constant behind the last. Instead of the four keys "
+                        "above.",
+                        numbers);
+      prm.add_parameter("Hardening stresses",
+                        material.hardening_stresses,
+                        "J2 plasticity: yield stresses of the hardening table [pressure], > 0, not decreasing.",
+                        numbers);
+    }
+
+    void add(ParameterHandler &prm, BodyParameters &body)
+    {
+      prm.add_parameter("Name", body.name, "Name in tables and messages [-].", Patterns::Anything());
+      prm.add_parameter(
+          "Mesh file",
+          body.mesh_file,
+          "Gmsh file of hexahedra of first or second order (8, 20 or 27 nodes) [-], relative to the folder of "
+          "the .prm file. The curved cells of a second-order file are kept under refinement; with Degree "
+          "= 1 only the corners of the refined cells count. A body has either a mesh file or a generator.",
+          Patterns::Anything());
+      prm.add_parameter(
+          "Volume ids", body.volume_ids, "Physical volumes taken from the mesh file [-]; empty: all.", ids);
+      prm.add_parameter("Generator",
+                        body.generator,
+                        "Function of deal.II's GridGenerator that makes the mesh [-], e.g. "
+                        "subdivided_hyper_rectangle; the table of generators at the end of this reference has them "
+                        "all, --explain finds them by name.",
+                        Patterns::Anything());
+      prm.add_parameter(
+          "Generator arguments",
+          body.generator_arguments,
+          "All arguments of the generator but the mesh, separated by ':' [length where they are "
+          "coordinates], e.g. 3,3,2 : 0,0,0 : 1,1,1 : true for subdivided_hyper_rectangle: cells, two "
+          "corners, colorize. With colorize the sides x-, x+, y-, y+, z-, z+ of a box have the boundary "
+          "ids 0 to 5, without it all have 0. cylinder: radius : half of the length along x (ids 0 hull, 1 "
+          "x-, 2 x+); hyper_ball: centre : radius. --validate prints the ids that there are.",
+          anything_separated_by(":"));
+      prm.add_parameter("Scale", body.scale, "Factor on all coordinates, before the rotation [-].", positive);
+      prm.add_parameter("Rotation axis", body.rotation_axis, "Axis of the rotation about the origin [-].");
+      prm.add_parameter("Rotation angle", body.rotation_angle, "Angle of the rotation [degrees].", any_number);
+      prm.add_parameter("Translation", body.translation, "Shift after scaling and rotation [length].");
+      prm.add_parameter(
+          "Global refinement", body.global_refinement, "Times every cell of the body is split into eight [-].", count);
+      prm.add_parameter("Local refinement",
+                        body.local_refinement,
+                        "Times that cells are split after that where Refine where holds at their centres [-].",
+                        count);
+      prm.add_parameter(
+          "Refine where",
+          body.refine_where,
+          "Expression of x, y, z [length], in place, that is not zero where cells are refined locally, e.g. "
+          "x*x + y*y < 4 [-]; asked at the centres of the cells before each time that they are split.",
+          Patterns::Anything());
+      add_choice(
+          prm,
+          "Volumetric treatment",
+          body.volumetric_treatment,
+          treatment_names,
+          "How the change of volume is integrated [-]: standard, at each point; mean dilatation, as the constant "
+          "(Degree = 1) or linear (Degree = 2) mean in each cell, which does not lock where the material is "
+          "nearly incompressible: rubber, metal that yields.");
+      prm.add_parameter(
+          "Rigid",
+          body.rigid,
+          "Whether the body is rigid and moves as the following keys say [-]; it has no material. One that "
+          "carries surfaces in closed form alone (Master surface of contact pairs) needs no mesh either.");
+      add_motion(prm, "Rigid ", body.motion, "", "the origin");
+      add_components(prm,
+                     "Rigid free",
+                     body.rigid_free,
+                     "Components of the motion of the rigid body that equilibrium finds, driven by Rigid force and "
+                     "Rigid moment [-]: translation x, y, z of the rotation centre, rotation rx, ry, rz about global "
+                     "axes through it; the others follow Rigid translation and Rigid rotation.",
+                     rigid_component_names);
+      add_expressions(prm,
+                      "Rigid force",
+                      body.rigid_force,
+                      "Force on the rigid body at time t, in global axes [force]: three expressions of t, separated by "
+                      "';'.");
+      add_expressions(prm,
+                      "Rigid moment",
+                      body.rigid_moment,
+                      "Moment on the rigid body at time t about its rotation centre as it moves, in global axes [force "
+                      "length]: three expressions of t, separated by ';'.");
+      prm.enter_subsection("Material");
+      add(prm, body.material);
+      prm.leave_subsection();
+    }
+
+    void add(ParameterHandler &prm, BoundaryConditionParameters &condition)
+    {
+      prm.add_parameter("Name", condition.name, "Name in tables and messages [-].", Patterns::Anything());
+      add_choice(
+          prm,
+          "Type",
+          condition.type,
+          type_names,
+          "What is prescribed [-]: displacement [length], traction per reference area [pressure], pressure that "
+          "follows the surface and pushes on the body where positive [pressure], body force per reference volume "
+          "[force/volume], spring to the ground per reference area [pressure/length].");
+      add_region(
+          prm,
+          "",
+          condition.region,
+          "; 0: every body",
+          "For displacements it is asked at the nodes, for loads at the centres of the faces (body force: cells).");
+      add_components(prm,
+                     "Components",
+                     condition.components,
+                     "Directions the condition acts in [-], e.g. x, z; none for a pressure.");
+      add_expressions(
+          prm,
+          "Value",
+          condition.value,
+          "Prescribed value [as Type says]: expressions of x, y, z [length] and the time t [-], separated by "
+          "';', one for each component, or one that holds for all of them. Displacements count from the reference "
+          "position. A total force F is a traction F/A, A the area that --validate prints.");
+      const std::string how = "one of the Interval ends";
+      prm.add_parameter("Active from",
+                        condition.active_from,
+                        "Time after which the condition acts [-]: 0 or " + how + ".",
+                        not_negative);
+      prm.add_parameter("Active until",
+                        condition.active_until,
+                        "Time until which the condition acts [-]: " + how +
+                            "; 0: the end. From then on a load is zero and a displacement free; what held it, its "
+                            "reaction, goes to zero linearly in the interval after it.",
+                        not_negative);
+    }
+
+    void add(ParameterHandler &prm, ContactPairParameters &pair)
+    {
+      add_contact_pair(prm, pair);
+    }
+
+    void add(ParameterHandler &prm, LoopParameters &loop, const std::string &mode, const std::string &tolerance)
+    {
+      add_choice(prm,
+                 "Mode",
+                 loop.mode,
+                 mode_names,
+                 "fixed point: a loop around Newton's method; newton: " + mode +
+                     " in each Newton iteration, with loops as the fallback where that stalls [-].");
+      prm.add_parameter("Maximum passes", loop.maximum_passes, "Passes before the increment is cut [-].", at_least_one);
+      if (!tolerance.empty())
+        prm.add_parameter("Tolerance", loop.tolerance, tolerance, positive);
+    }
+
+    void add(ParameterHandler &prm, NewtonParameters &newton)
+    {
+      prm.add_parameter(
+          "Maximum iterations", newton.maximum_iterations, "Iterations before the increment is cut [-].", at_least_one);
+      prm.add_parameter("Force tolerance",
+                        newton.force_tolerance,
+                        "Largest nodal force out of balance relative to the largest nodal force [-].",
+                        positive);
+      prm.add_parameter("Contact tolerance",
+                        newton.contact_tolerance,
+                        "Gap and slip relative to the displacement of the step, friction law absolute [-].",
+                        positive);
+      prm.add_parameter("Line search", newton.line_search, "Shorten a correction that increases the residual [-].");
+      prm.add_parameter("Largest forcing term",
+                        newton.largest_forcing_term,
+                        "Relative accuracy of corrections by an iterative linear solver far from the solution; near it "
+                        "they become as accurate as Newton's method can use. With 0 all have the tolerance of the "
+                        "linear solver [-].",
+                        Patterns::Double(0., 0.1));
+    }
+
+    void add(ParameterHandler &prm, LinearSolverParameters &solver)
+    {
+      add_choice(
+          prm,
+          "Type",
+          solver.type,
+          solver_names,
+          "Linear solver [-]: direct is MUMPS; condensed eliminates multipliers and held slave displacements and "
+          "needs conjugate gradients with algebraic multigrid (large models); block is GMRES on all unknowns, "
+          "for what cannot be condensed: integration points and consistent weights. automatic takes direct up to "
+          "20000 displacements, for more condensed, or block where that is needed.");
+      prm.add_parameter("Tolerance",
+                        solver.tolerance,
+                        "Block and condensed solver: least relative residual; corrections that Newton goes on from "
+                        "need not reach it [-].",
+                        positive);
+      prm.add_parameter("Maximum iterations",
+                        solver.maximum_iterations,
+                        "Block and condensed solver: iterations before they give up [-].",
+                        at_least_one);
+      prm.add_parameter("Augmentation factor",
+                        solver.augmentation_factor,
+                        "Block solver: weight of the constraints in units of the diagonal of the stiffness [-].",
+                        not_negative);
+    }
+
+    void add(ParameterHandler &prm, LoadSteppingParameters &load)
+    {
+      const unsigned int many = std::numeric_limits<unsigned int>::max();
+      prm.add_parameter("Interval ends",
+                        load.interval_ends,
+                        "Increasing times at which the intervals end [-]; the first interval starts at 0.",
+                        Patterns::List(not_negative, 1, many, ","));
+      prm.add_parameter("Increments",
+                        load.increments,
+                        "Number of equal increments of each interval [-], unless they fail or grow.",
+                        Patterns::List(at_least_one, 1, many, ","));
+      prm.add_parameter("Cut back",
+                        load.cut_back,
+                        "Whether an increment that fails is halved and tried again [-]. After an easy one (see Easy "
+                        "iterations) increments grow back; the times that Increments asks for are met all the same.");
+      prm.add_parameter("Minimum increment",
+                        load.minimum_increment,
+                        "Increment of time below which a run is given up [-]; 0: 1/64 of what Increments asks for.",
+                        not_negative);
+      prm.add_parameter("Maximum increment",
+                        load.maximum_increment,
+                        "Increment of time up to which easy increments grow, beyond what Increments asks for [-]; the "
+                        "ends of the intervals are met all the same. 0: no such growth.",
+                        not_negative);
+      prm.add_parameter("Easy iterations",
+                        load.easy_iterations,
+                        "An increment with at most so many Newton iterations, and no merged iteration given up, is "
+                        "easy: the next one may be twice as large [-].",
+                        count);
+      prm.add_parameter(
+          "Viscous stabilisation",
+          load.viscous_stabilisation,
+          "Dashpots at all nodes for bodies that nothing holds before contact closes, relative to the "
+          "stiffness of the body, e.g. 1e-2; they fade in the course of each interval and are reported [-].",
+          not_negative);
+    }
+
+    void add(ParameterHandler &prm, AdaptivityParameters &adaptivity)
+    {
+      const Patterns::Double fraction(0., 1.);
+      prm.add_parameter("Interval",
+                        adaptivity.interval,
+                        "Increments between two refinements of the mesh [-]; 0: the mesh stays as it is.",
+                        count);
+      prm.add_parameter("Initial cycles",
+                        adaptivity.initial_cycles,
+                        "Refinements before the first increment, of the cells on both sides of gaps up to Contact "
+                        "distance [-].",
+                        count);
+      prm.add_parameter("Contact distance",
+                        adaptivity.contact_distance,
+                        "Gap that is expected to close [length]; 0: the mean slave face size of the pair.",
+                        not_negative);
+      prm.add_parameter("Repetitions",
+                        adaptivity.repetitions,
+                        "Times that an increment is repeated on the refined mesh, until no cell is to be refined [-].",
+                        count);
+      prm.add_parameter(
+          "Bulk weight",
+          adaptivity.bulk_weight,
+          "Weight, in the indicator of the error, of the difference between the stress and the one recovered at the "
+          "nodes [-].",
+          not_negative);
+      prm.add_parameter("Contact weight",
+                        adaptivity.contact_weight,
+                        "Weight of the contact terms in it: the jump between the contact traction and the stress below "
+                        "it, gaps and penetrations between the nodes, ends of the contact and of the stick zone [-].",
+                        not_negative);
+      add_choice(prm,
+                 "Marking",
+                 adaptivity.marking,
+                 marking_names,
+                 "fixed fraction: the cells with the largest errors that hold Refine fraction of the squared error are "
+                 "refined, those with the smallest that hold Coarsen fraction coarsened; target error: cells above "
+                 "their equal share of Target error are refined, those far below coarsened [-].");
+      prm.add_parameter("Refine fraction",
+                        adaptivity.refine_fraction,
+                        "Part of the squared error in the cells that are refined [-].",
+                        fraction);
+      prm.add_parameter("Coarsen fraction",
+                        adaptivity.coarsen_fraction,
+                        "Part of the squared error in the cells that are coarsened [-].",
+                        fraction);
+      prm.add_parameter("Target error",
+                        adaptivity.target_error,
+                        "Estimated error of the stress relative to the stress, in the norm of the energy [-].",
+                        positive);
+      prm.add_parameter(
+          "Maximum level", adaptivity.maximum_level, "Refinements of a cell beyond those of its body [-].", count);
+      prm.add_parameter("Maximum unknowns",
+                        adaptivity.maximum_unknowns,
+                        "Displacement degrees of freedom that refinement stops at [-].",
+                        positive);
+      prm.add_parameter(
+          "Slave at least as fine",
+          adaptivity.slave_at_least_as_fine,
+          "Whether slave faces are refined until they are no larger than the master faces they face [-].");
+    }
+
+    void add(ParameterHandler &prm, OutputParameters &output)
+    {
+      prm.add_parameter("Results folder",
+                        output.results_folder,
+                        "Folder of all results [-], relative to the working folder; empty: results/<name of the .prm "
+                        "file>.",
+                        Patterns::Anything());
+      prm.add_parameter("Write VTU",
+                        output.write_vtu,
+                        "Whether fields are written [-]; false leaves the tables (a series of runs, measuring time).");
+      prm.add_parameter(
+          "VTU interval",
+          output.vtu_interval,
+          "Increments between two files of the fields [-], the first of which has the initial state; 0: the last "
+          "increment only.",
+          count);
+      prm.add_parameter("Checkpoint interval",
+                        output.checkpoint_interval,
+                        "Increments between two checkpoints, from which --restart continues [-]; 0: only where a "
+                        "signal asks for one (SIGUSR1, SIGTERM, SIGINT).",
+                        count);
+    }
+
+    template <typename Struct, typename... Arguments>
+    void add_subsection(ParameterHandler &prm, const std::string &name, Struct &parameters, const Arguments &...more)
+    {
+      prm.enter_subsection(name);
+      add(prm, parameters, more...);
+      prm.leave_subsection();
+    }
+
+    template <typename Struct>
+    void add_numbered(ParameterHandler &prm, const std::string &name, std::vector<Struct> &all)
+    {
+      for (unsigned int i = 0; i < all.size(); ++i)
+        add_subsection(prm, name + ' ' + std::to_string(i + 1), all[i]);
+    }
+  } // namespace
+
+  void Parameters::add_parameters(ParameterHandler &prm)
+  {
+    prm.add_parameter("Title", title, "Title of the case, for the log [-].", Patterns::Anything());
+    prm.enter_subsection("Discretization");
+    prm.add_parameter("Degree", degree, "Polynomial degree of the displacement [-].", Patterns::Integer(1, 2));
+    prm.leave_subsection();
+    add_numbered(prm, "Body", bodies);
+    add_numbered(prm, "Boundary condition", boundary_conditions);
+    add_numbered(prm, "Contact pair", contact_pairs);
+    add_subsection(prm,
+                   "Geometry loop",
+                   geometry_loop,
+                   "projections, normals and areas are renewed and linearised",
+                   "Change of the displacement in a pass, relative to the displacement of the increment [-].");
+    add_subsection(prm,
+                   "Threshold loop",
+                   threshold_loop,
+                   "the friction threshold follows the pressure and is linearised",
+                   "Change of the contact pressure, relative [-].");
+    // no tolerance: no status may change
+    add_subsection(prm, "Status loop", status_loop, "statuses are tested and changed", "");
+    add_subsection(prm, "Newton", newton);
+    add_subsection(prm, "Linear solver", linear_solver);
+    add_subsection(prm, "Load stepping", load_stepping);
+    add_subsection(prm, "Adaptivity", adaptivity);
+    add_subsection(prm, "Output", output);
+  }
+
+  std::string text_of(const MaterialParameters::Law law)
+  {
+    return text_of(law, law_names);
+  }
+
+  std::string text_of(const BoundaryConditionParameters::Type type)
+  {
+    return text_of(type, type_names);
+  }
+
+  std::string text_of(const LoopParameters::Mode mode)
+  {
+    return text_of(mode, mode_names);
+  }
+
+  std::string text_of(const LinearSolverParameters::Type type)
+  {
+    return text_of(type, solver_names);
+  }
+
+  std::map<std::string, std::string> Parameters::model() const
+  {
+    Parameters       copy(*this); // its values become the defaults of prm
+    ParameterHandler prm;
+    copy.add_parameters(prm);
+    std::map<std::string, std::string> values;
+    for (const auto &key : declared_keys(prm))
+      for (const std::string room : {"Discretization", "Body", "Boundary condition", "Contact pair"})
+        if (key.section.compare(0, room.size(), room) == 0)
+          values[key.section + '/' + key.key] = key.default_value;
+    return values;
+  }
+
+  Parameters Parameters::read(const std::string &file, const std::vector<std::string> &overrides)
+  {
+    const ParameterFile text(file, overrides);
+
+    Parameters parameters;
+    parameters.file = file;
+    parameters.bodies.resize(text.count("Body"));
+    parameters.boundary_conditions.resize(text.count("Boundary condition"));
+    parameters.contact_pairs.resize(text.count("Contact pair"));
+
+    ParameterHandler prm; // holds references to the members of parameters
+    parameters.add_parameters(prm);
+    text.apply_to(prm);
+
+    const std::filesystem::path path(file);
+    for (auto &body : parameters.bodies)
+      if (!body.mesh_file.empty())
+        body.mesh_file = (path.parent_path() / body.mesh_file).lexically_normal().string();
+    for (auto &condition : parameters.boundary_conditions)
+      if (condition.value.size() == 1 && condition.components.size() > 1)
+        condition.value.resize(condition.components.size(), std::string(condition.value[0]));
+
+    for (unsigned int p = 0; p < parameters.contact_pairs.size(); ++p)
+      if (parameters.contact_pairs[p].name.empty())
+        parameters.contact_pairs[p].name = "pair " + std::to_string(p + 1);
+    if (parameters.output.results_folder.empty())
+      parameters.output.results_folder = (std::filesystem::path("results") / path.stem()).string();
+
+    parameters.check(text);
+    for (unsigned int b = 0; b < parameters.bodies.size(); ++b)
+      if (const BodyParameters &body = parameters.bodies[b]; !body.generator.empty())
+      {
+        const std::string section = "Body " + std::to_string(b + 1);
+        if (const std::string mistake = Generators::mistake_in_name(body.generator); !mistake.empty())
+          text.refuse(section, "Generator", mistake);
+        if (const std::string mistake = Generators::mistake_in_arguments(body.generator, body.generator_arguments);
+            !mistake.empty())
+          text.refuse(section, "Generator arguments", mistake);
+      }
+    return parameters;
+  }
+} // namespace Nodus

@@ -1,0 +1,372 @@
+#include "parameters/parameter_checks.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <numeric>
+#include <set>
+#include <sstream>
+
+// What a single value cannot tell: fixes are part of every message, file and line are added by ParameterFile.
+
+namespace Nodus
+{
+  namespace
+  {
+    using ParameterChecks::check;
+    using ParameterChecks::check_expression;
+    using ParameterChecks::is_given;
+    using ParameterChecks::Section;
+    using ParameterChecks::share_faces;
+
+    void check_ogden(const Section &section, const MaterialParameters &material)
+    {
+      const auto &moduli = material.ogden_moduli, &exponents = material.ogden_exponents;
+      section.require(!moduli.empty(), "Ogden moduli", "is missing; give one number for each term");
+      section.require(exponents.size() == moduli.size(),
+                      "Ogden exponents",
+                      "has " + std::to_string(exponents.size()) + " entries for " + std::to_string(moduli.size()) +
+                          " entries of Ogden moduli; give one for each term");
+      section.require(std::count(exponents.begin(), exponents.end(), 0.) == 0,
+                      "Ogden exponents",
+                      "must not be 0; remove such a term");
+      section.require(
+          std::inner_product(moduli.begin(), moduli.end(), exponents.begin(), 0.) > 0.,
+          "Ogden moduli",
+          "times the exponents give a shear modulus that is not > 0; a modulus has the sign of its exponent");
+    }
+
+    void check_hardening(const Section &section, const MaterialParameters &material)
+    {
+      const auto &strains = material.hardening_strains, &stresses = material.hardening_stresses;
+      if (!strains.empty() || !stresses.empty())
+      {
+        section.require(material.yield_stress == 0. && material.hardening_modulus == 0. &&
+                            material.saturation_stress == 0. && material.saturation_rate == 0.,
+                        "Hardening strains",
+                        "is a table besides Yield stress, Hardening modulus or Saturation; remove one of the two");
+        section.require(strains.size() == stresses.size(),
+                        "Hardening stresses",
+                        "has " + std::to_string(stresses.size()) + " entries for " + std::to_string(strains.size()) +
+                            " entries of Hardening strains; give one for each");
+        section.require(strains[0] == 0. &&
+                            std::adjacent_find(strains.begin(), strains.end(), std::greater_equal<>()) == strains.end(),
+                        "Hardening strains",
+                        "must begin with 0 and increase");
+        section.require(stresses[0] > 0. &&
+                            std::adjacent_find(stresses.begin(), stresses.end(), std::greater<>()) == stresses.end(),
+                        "Hardening stresses",
+                        "must be > 0 and must not decrease; softening would depend on the mesh");
+        return;
+      }
+      section.require(material.yield_stress > 0., "Yield stress", "must be given and > 0, or a hardening table");
+      section.require((material.saturation_stress > 0.) == (material.saturation_rate > 0.),
+                      "Saturation stress",
+                      "and Saturation rate go together; give both or none");
+      section.require(material.saturation_stress == 0. || material.saturation_stress >= material.yield_stress,
+                      "Saturation stress",
+                      "must not be below Yield stress; softening would depend on the mesh");
+    }
+
+    void check(const Section &section, const MaterialParameters &material)
+    {
+      using Law = MaterialParameters::Law;
+      section.require(
+          material.poissons_ratio > -1. && material.poissons_ratio < 0.5,
+          "Poisson's ratio",
+          "must be > -1 and < 0.5; for nearly incompressible material take 0.499 and 'Volumetric treatment = "
+          "mean dilatation'");
+      section.require(material.mooney_rivlin_ratio == 0. || material.law == MaterialParameters::Law::mooney_rivlin,
+                      "Mooney-Rivlin ratio",
+                      "has no effect on this law; remove it or set Law = Mooney-Rivlin");
+      if (material.law == Law::ogden)
+      {
+        section.require(material.youngs_modulus == 0.,
+                        "Young's modulus",
+                        "follows from the moduli and exponents of Ogden; remove it");
+        check_ogden(section, material);
+      }
+      else
+      {
+        section.require(material.youngs_modulus > 0., "Young's modulus", "must be given and > 0");
+        for (const auto &[key, values] : {std::make_pair("Ogden moduli", &material.ogden_moduli),
+                                          std::make_pair("Ogden exponents", &material.ogden_exponents)})
+          section.require(values->empty(), key, "has no effect on this law; remove it or set Law = Ogden");
+      }
+      if (material.law == Law::j2_plasticity)
+        check_hardening(section, material);
+      else
+        for (const auto &[key, given] : {std::make_pair("Yield stress", material.yield_stress != 0.),
+                                         std::make_pair("Hardening modulus", material.hardening_modulus != 0.),
+                                         std::make_pair("Saturation stress", material.saturation_stress != 0.),
+                                         std::make_pair("Saturation rate", material.saturation_rate != 0.),
+                                         std::make_pair("Hardening strains", !material.hardening_strains.empty()),
+                                         std::make_pair("Hardening stresses", !material.hardening_stresses.empty())})
+          section.require(!given, key, "has no effect on this law; remove it or set Law = J2 plasticity");
+    }
+
+    /// What drives a rigid body has an effect on its free components, what moves it on the others.
+    void check_free_motion(const Section &section, const BodyParameters &body)
+    {
+      std::array<bool, 2 * dim> free{};
+      for (const unsigned int c : body.rigid_free)
+      {
+        section.require(!free[c], "Rigid free", "names a component twice; give each one once");
+        free[c] = true;
+      }
+      const auto check_load =
+          [&](const std::string &key, const std::vector<std::string> &load, const unsigned int first)
+      {
+        section.require(load.size() == dim,
+                        key,
+                        "has " + std::to_string(load.size()) +
+                            " expressions; give three, separated by ';', for example 0; 0; -10*t");
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          check_expression(section, key, load[c], "t");
+          section.require(load[c] == "0" || free[first + c],
+                          key,
+                          "has '" + load[c] + "' along " + "xyz"[c] +
+                              ", where the motion is prescribed and the force has no effect; set it to 0, or add " +
+                              (first > 0 ? "r" : "") + "xyz"[c] + " to 'Rigid free'");
+        }
+      };
+      check_load("Rigid force", body.rigid_force, 0);
+      check_load("Rigid moment", body.rigid_moment, dim);
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        section.require(!free[c] || body.motion.translation[c] == "0",
+                        "Rigid translation",
+                        "prescribes '" + body.motion.translation[c] + "' along " + "xyz"[c] +
+                            ", which is among 'Rigid free'; set it to 0, or take it out there");
+        section.require(!free[dim + c] || body.motion.rotation == "0" || body.motion.rotation_axis[c] == 0.,
+                        "Rigid rotation",
+                        std::string("turns the body about r") + "xyz"[c] +
+                            ", which is among 'Rigid free'; remove it, or take that out there");
+      }
+    }
+
+    void check(const Section &section, const BodyParameters &body)
+    {
+      section.require(body.has_mesh() || body.rigid, "Mesh file", "is missing; give either Mesh file or Generator");
+      section.require(body.mesh_file.empty() || body.generator.empty(),
+                      "Generator",
+                      "is given besides Mesh file; remove one of the two");
+      if (!body.has_mesh())
+        for (const auto &[key, given] : {std::make_pair("Generator arguments", !body.generator_arguments.empty()),
+                                         std::make_pair("Scale", body.scale != 1.),
+                                         std::make_pair("Rotation angle", body.rotation_angle != 0.),
+                                         std::make_pair("Translation", body.translation != Vector3()),
+                                         std::make_pair("Global refinement", body.global_refinement > 0),
+                                         std::make_pair("Local refinement", body.local_refinement > 0)})
+          section.require(
+              !given, key, "has no effect on a rigid body without a mesh; remove it, or give Mesh file or Generator");
+      if (!body.mesh_file.empty())
+      {
+        section.require(std::filesystem::is_regular_file(body.mesh_file),
+                        "Mesh file",
+                        "is no file: " + body.mesh_file + "; names are relative to the folder of the .prm file");
+        section.require(body.generator_arguments.empty(), "Generator arguments", "goes with Generator only; remove it");
+      }
+      else
+        section.require(body.volume_ids.empty(), "Volume ids", "goes with Mesh file only; remove it");
+      section.require(body.rotation_angle == 0. || body.rotation_axis.norm() > 0.,
+                      "Rotation axis",
+                      "must not be zero when there is a Rotation angle; give a direction such as 0, 0, 1");
+      section.require((body.local_refinement > 0) == !body.refine_where.empty(),
+                      "Refine where",
+                      "and Local refinement go together; give both or none");
+      if (!body.refine_where.empty())
+        check_expression(section, "Refine where", body.refine_where, "x,y,z");
+      if (!body.rigid)
+      {
+        section.require(!is_given(body.motion),
+                        "Rigid translation",
+                        "and the like have no effect on a body that is not rigid; remove them, or set 'Rigid = true'");
+        const BodyParameters none;
+        section.require(body.rigid_free.empty() && body.rigid_force == none.rigid_force &&
+                            body.rigid_moment == none.rigid_moment,
+                        "Rigid free",
+                        "and Rigid force and moment have no effect on a body that is not rigid; remove them, or set "
+                        "'Rigid = true'");
+        check({section.file, section.name + "/Material"}, body.material);
+        return;
+      }
+      check(section, body.motion, "Rigid ", Vector3());
+      check_free_motion(section, body);
+      section.require(body.volumetric_treatment == BodyParameters::VolumetricTreatment::standard,
+                      "Volumetric treatment",
+                      "has no effect on a rigid body; remove it");
+      Section{section.file, section.name + "/Material"}.require(
+          body.material.youngs_modulus == 0. && body.material.ogden_moduli.empty(),
+          "Young's modulus",
+          "has no meaning for a rigid body; remove the material, or 'Rigid = true'");
+    }
+
+    void check(const Section                     &section,
+               const BoundaryConditionParameters &condition,
+               const unsigned int                 n_bodies,
+               const std::vector<double>         &interval_ends)
+    {
+      using Type = BoundaryConditionParameters::Type;
+      check(section, condition.region, "", n_bodies, 0);
+      const bool on_boundary = condition.type != Type::body_force;
+      section.require(condition.region.boundary_ids.empty() != on_boundary,
+                      "Boundary ids",
+                      on_boundary ? "is missing; give the ids of the faces the condition acts on"
+                                  : "has no meaning for a body force; remove it");
+
+      const bool directed = condition.type != Type::pressure;
+      section.require(condition.components.empty() != directed,
+                      "Components",
+                      directed ? "is missing; give some of x, y, z"
+                               : "has no meaning for a pressure, which acts along the normal; remove it");
+      const std::set<unsigned int> distinct(condition.components.begin(), condition.components.end());
+      section.require(distinct.size() == condition.components.size(),
+                      "Components",
+                      "names a direction twice; give each of x, y, z at most once");
+
+      const std::size_t wanted = directed ? condition.components.size() : 1;
+      section.require(condition.value.size() == wanted,
+                      "Value",
+                      condition.value.empty()
+                          ? "is missing; give an expression of x, y, z, t such as 0 or -0.1*t"
+                          : "has " + std::to_string(condition.value.size()) + " expressions for " +
+                                std::to_string(wanted) + (directed ? " components" : " pressure") +
+                                "; separate expressions by ';', one for each component or one for all");
+      for (const auto &expression : condition.value)
+      {
+        section.require(!expression.empty(), "Value", "has an empty expression; write 0 for zero");
+        check_expression(section, "Value", expression, "x,y,z,t");
+      }
+
+      for (const auto &[key, t] : {std::pair<const char *, double>("Active from", condition.active_from),
+                                   {"Active until", condition.active_until}})
+        section.require(t == 0. || std::count(interval_ends.begin(), interval_ends.end(), t) > 0,
+                        key,
+                        "must be 0 or one of the times in Load stepping / Interval ends; add it there");
+      section.require(condition.active_until == 0. || condition.active_until > condition.active_from,
+                      "Active until",
+                      "is not after Active from; the condition would never act");
+    }
+
+    void check(const Section &section, const LinearSolverParameters &solver)
+    {
+      section.require(solver.tolerance < 1., "Tolerance", "must be < 1; it is relative, for example 1e-10");
+    }
+
+    void check(const Section &section, const LoadSteppingParameters &load)
+    {
+      double begin = 0.;
+      for (const double end : load.interval_ends)
+      {
+        std::ostringstream message;
+        message << "goes from " << begin << " to " << end << "; the times must increase and be > 0";
+        section.require(end > begin, "Interval ends", message.str());
+        begin = end;
+      }
+      section.require(load.increments.size() == load.interval_ends.size(),
+                      "Increments",
+                      "has " + std::to_string(load.increments.size()) + " entries for " +
+                          std::to_string(load.interval_ends.size()) +
+                          " entries of Interval ends; give one number for each interval");
+      section.require(load.viscous_stabilisation == 0. ||
+                          *std::min_element(load.increments.begin(), load.increments.end()) > 1,
+                      "Viscous stabilisation",
+                      "is gone at the end of an interval; give every interval 2 Increments at least");
+      section.require(load.maximum_increment == 0. || load.minimum_increment <= load.maximum_increment,
+                      "Minimum increment",
+                      "is larger than Maximum increment; lower it");
+    }
+
+    void check(const Section &section, const AdaptivityParameters &adaptivity)
+    {
+      section.require(adaptivity.refine_fraction + adaptivity.coarsen_fraction <= 1.,
+                      "Coarsen fraction",
+                      "and Refine fraction together are more than 1; no cell can be in both");
+      section.require(adaptivity.bulk_weight + adaptivity.contact_weight > 0. || adaptivity.interval == 0,
+                      "Bulk weight",
+                      "and Contact weight are both 0: there is no indicator; give one of them");
+    }
+
+    template <typename Struct>
+    void check_names(const ParameterFile &file, const std::string &subsection, const std::vector<Struct> &all)
+    {
+      for (unsigned int i = 0; i < all.size(); ++i)
+        for (unsigned int j = 0; j < i; ++j)
+          Section{file, subsection + ' ' + std::to_string(i + 1)}.require(
+              all[i].name.empty() || all[i].name != all[j].name,
+              "Name",
+              "is also the name of '" + subsection + ' ' + std::to_string(j + 1) +
+                  "'; tables could not tell them apart");
+    }
+  } // namespace
+
+  void Parameters::check(const ParameterFile &file) const
+  {
+    const unsigned int n_bodies = bodies.size();
+    if (n_bodies == 0)
+      throw InputError(this->file + ": there is no body; add a subsection 'Body 1'");
+
+    for (unsigned int i = 0; i < n_bodies; ++i)
+      Nodus::check({file, "Body " + std::to_string(i + 1)}, bodies[i]);
+    Section{file, "Body 1"}.require(
+        std::any_of(bodies.begin(), bodies.end(), [](const BodyParameters &body) { return !body.rigid; }),
+        "Rigid",
+        "is true for all bodies; there is nothing to solve, leave one deformable");
+    for (unsigned int i = 0; i < boundary_conditions.size(); ++i)
+    {
+      const Section section{file, "Boundary condition " + std::to_string(i + 1)};
+      Nodus::check(section, boundary_conditions[i], n_bodies, load_stepping.interval_ends);
+      for (unsigned int b = 0; b < n_bodies; ++b)
+        section.require(bodies[b].has_mesh() ||
+                            (boundary_conditions[i].region.body != b + 1 &&
+                             (boundary_conditions[i].region.body > 0 ||
+                              boundary_conditions[i].type != BoundaryConditionParameters::Type::body_force)),
+                        "Body",
+                        "is or includes body " + std::to_string(b + 1) +
+                            ", which has no mesh; leave it out, and drive it by Rigid translation or Rigid force");
+    }
+    for (unsigned int i = 0; i < contact_pairs.size(); ++i)
+    {
+      const Section section{file, "Contact pair " + std::to_string(i + 1)};
+      Nodus::check(section, contact_pairs[i], n_bodies);
+      const ContactPairParameters &pair   = contact_pairs[i];
+      const BodyParameters        &slave  = bodies[pair.slave.body - 1];
+      const BodyParameters *const  master = pair.master.body > 0 ? &bodies[pair.master.body - 1] : nullptr;
+      section.require(slave.has_mesh(), "Slave body", "has no mesh; give the number of a body that has one");
+      section.require(pair.has_rigid_master() || master->has_mesh(),
+                      "Master body",
+                      "has no mesh; say what surface it carries with Master surface, or give it a mesh");
+      section.require(!pair.has_carried_master() || master->rigid,
+                      "Master body",
+                      "is not rigid and cannot carry a rigid surface; remove it, or set 'Rigid = true' there");
+      section.require(!slave.rigid || !(pair.has_rigid_master() || master->rigid),
+                      "Slave body",
+                      "is rigid, as is the master: neither can give way; remove the pair");
+      for (unsigned int j = 0; j < i; ++j)
+        section.require(!share_faces(contact_pairs[i].slave, contact_pairs[j].slave),
+                        "Slave boundary ids",
+                        "names faces that are already slaves of 'Contact pair " + std::to_string(j + 1) +
+                            "'; a face can be slave only once");
+    }
+    for (unsigned int b = 0; b < n_bodies; ++b)
+      Section{file, "Body " + std::to_string(b + 1)}.require(
+          bodies[b].has_mesh() ||
+              std::any_of(contact_pairs.begin(),
+                          contact_pairs.end(),
+                          [b](const ContactPairParameters &pair) { return pair.master.body == b + 1; }),
+          "Mesh file",
+          "is missing, and the body carries no surface either; give a mesh, or a contact pair with a Master surface "
+          "and 'Master body = " +
+              std::to_string(b + 1) + "'");
+    check_names(file, "Body", bodies);
+    check_names(file, "Boundary condition", boundary_conditions);
+    check_names(file, "Contact pair", contact_pairs);
+
+    Nodus::check({file, "Linear solver"}, linear_solver);
+    Nodus::check({file, "Load stepping"}, load_stepping);
+    Nodus::check({file, "Adaptivity"}, adaptivity);
+  }
+} // namespace Nodus

@@ -1,0 +1,204 @@
+#include "parameters/expression.h"
+#include "parameters/parameter_checks.h"
+
+#include <algorithm>
+
+// Contact pairs, and what they share with bodies and boundary conditions.
+
+namespace Nodus
+{
+  void ParameterChecks::check_expression(const Section     &section,
+                                         const std::string &key,
+                                         const std::string &text,
+                                         const std::string &variables)
+  {
+    const std::string problem = expression_complaint(text, variables);
+    section.require(problem.empty(),
+                    key,
+                    "has the expression '" + text + "' that does not parse: " + problem +
+                        (variables == "t" ? "; the variable is t"
+                                          : "; variables are x, y, z" +
+                                                (variables.size() > 5 ? std::string(", ") + variables.back() : "")) +
+                        ", constants pi");
+  }
+
+  void ParameterChecks::check(const Section          &section,
+                              const RegionParameters &region,
+                              const std::string      &prefix,
+                              const unsigned int      n_bodies,
+                              const unsigned int      smallest_body)
+  {
+    const std::string choice = (smallest_body == 0 ? "0 (every body) to " : "1 to ") + std::to_string(n_bodies);
+    section.require(region.body >= smallest_body && region.body <= n_bodies,
+                    prefixed(prefix, "Body"),
+                    "is " + std::to_string(region.body) + "; give the number of a body, " + choice);
+    if (!region.where.empty())
+      check_expression(section, prefixed(prefix, "Where"), region.where, "x,y,z");
+  }
+
+  void ParameterChecks::check(const Section                    &section,
+                              const PrescribedMotionParameters &motion,
+                              const std::string                &prefix,
+                              const Vector3                    &axis)
+  {
+    section.require(motion.translation.size() == dim,
+                    prefixed(prefix, "Translation"),
+                    "has " + std::to_string(motion.translation.size()) +
+                        " expressions; give three, separated by ';', for example 0; 0; -0.1*t");
+    for (const std::string &expression : motion.translation)
+      check_expression(section, prefixed(prefix, "Translation"), expression, "t");
+    check_expression(section, prefixed(prefix, "Rotation"), motion.rotation, "t");
+    section.require(motion.rotation == "0" || (motion.rotation_axis + axis).norm() > 0.,
+                    prefixed(prefix, "Rotation axis"),
+                    "must not be zero when there is a Rotation; give a direction such as 0, 0, 1");
+    section.require(motion.rotation_centre.empty() || motion.rotation_centre.size() == dim,
+                    prefixed(prefix, "Rotation centre"),
+                    "has " + std::to_string(motion.rotation_centre.size()) + " numbers; give three, or none");
+  }
+
+  bool ParameterChecks::is_given(const PrescribedMotionParameters &motion)
+  {
+    const PrescribedMotionParameters none;
+    return motion.translation != none.translation || motion.rotation != none.rotation ||
+           motion.rotation_axis != none.rotation_axis || !motion.rotation_centre.empty();
+  }
+
+  bool ParameterChecks::share_faces(const RegionParameters &a, const RegionParameters &b)
+  {
+    const auto in_b = [&b](const dealii::types::boundary_id id)
+    { return std::count(b.boundary_ids.begin(), b.boundary_ids.end(), id) > 0; };
+    return a.body == b.body && a.where == b.where && std::any_of(a.boundary_ids.begin(), a.boundary_ids.end(), in_b);
+  }
+
+  namespace
+  {
+    using namespace ParameterChecks;
+
+    void check_friction(const Section &section, const ContactPairParameters &pair)
+    {
+      const bool tied    = pair.contact_law == ContactPairParameters::ContactLaw::tied,
+                 coulomb = pair.friction_coefficient > 0.;
+      for (const auto &[key, given] :
+           {std::make_pair("Friction coefficient", coulomb),
+            std::make_pair("Shear limit", pair.shear_limit > 0.),
+            std::make_pair("Initial overclosure",
+                           pair.initial_overclosure != ContactPairParameters::InitialOverclosure::resolve)})
+        section.require(!tied || !given, key, "has no effect on a tied pair; remove it");
+      section.require(pair.contact_law == ContactPairParameters::ContactLaw::unilateral ||
+                          pair.initial_overclosure == ContactPairParameters::InitialOverclosure::resolve,
+                      "Initial overclosure",
+                      "has no effect on a bilateral pair, which is always adjusted; remove it");
+      section.require(!tied || pair.initial_status != ContactPairParameters::InitialStatus::open,
+                      "Initial status",
+                      "is open, but a tied pair never closes later; remove it");
+      if (pair.friction_law == ContactPairParameters::FrictionLaw::tresca)
+      {
+        section.require(!tied, "Friction law", "has no effect on a tied pair; remove it");
+        section.require(pair.shear_limit > 0., "Shear limit", "must be given and > 0: it is the friction of Tresca");
+        section.require(!coulomb, "Friction coefficient", "has no effect on 'Friction law = Tresca'; remove it");
+      }
+      else
+        section.require(coulomb || pair.shear_limit == 0.,
+                        "Shear limit",
+                        "limits a friction that is 0; give a Friction coefficient, or set 'Friction law = Tresca'");
+      const bool second = pair.second_friction_coefficient > 0., direction = pair.friction_direction != Vector3();
+      section.require(!second || coulomb, "Second friction coefficient", "needs a Friction coefficient > 0");
+      section.require(!second || direction, "Friction direction", "is missing; give that of the first coefficient");
+      section.require(second || !direction,
+                      "Friction direction",
+                      "has no effect without a Second friction coefficient; remove it or give that");
+      const bool factor = pair.friction_factor != "1";
+      section.require(!factor || coulomb || pair.friction_law == ContactPairParameters::FrictionLaw::tresca,
+                      "Friction factor",
+                      "has no effect without friction; give a Friction coefficient");
+      if (factor)
+        check_expression(section, "Friction factor", pair.friction_factor, "x,y,z,v");
+    }
+
+    void check_master(const Section &section, const ContactPairParameters &pair, const unsigned int n_bodies)
+    {
+      using Shape         = MasterSurfaceParameters::Shape;
+      const auto &surface = pair.master_surface;
+      if (!pair.has_rigid_master())
+      {
+        check(section, pair.master, "Master ", n_bodies, 1);
+        section.require(!pair.master.boundary_ids.empty(),
+                        "Master boundary ids",
+                        "is missing; give the boundary ids of the faces in contact");
+        section.require(!share_faces(pair.slave, pair.master),
+                        "Master boundary ids",
+                        "names faces that are slaves of the same pair; give the two sides different bodies or ids");
+        for (const auto &[key, given] : {std::make_pair("Master point", surface.point != Point()),
+                                         std::make_pair("Master axis", surface.axis != Vector3()),
+                                         std::make_pair("Master radius", surface.radius != 0.),
+                                         std::make_pair("Master cavity", surface.cavity),
+                                         std::make_pair("Master translation", is_given(surface.motion))})
+          section.require(
+              !given,
+              key,
+              "and the like have no effect on a meshed master; remove them, or set Master surface to plane, "
+              "sphere, cylinder or paraboloid");
+        return;
+      }
+      const std::string shape = text_of(surface.shape);
+      for (const auto &[key, given] : {std::make_pair("Master boundary ids", !pair.master.boundary_ids.empty()),
+                                       std::make_pair("Master where", !pair.master.where.empty())})
+        section.require(!given,
+                        key,
+                        "has no meaning besides 'Master surface = " + shape +
+                            "', which has no mesh; remove one of the two");
+      const bool plane = surface.shape == Shape::plane, sphere = surface.shape == Shape::sphere;
+      section.require(plane || surface.radius > 0., "Master radius", "must be given and > 0 for a " + shape);
+      section.require(!plane || surface.radius == 0., "Master radius", "has no meaning for a plane; remove it");
+      section.require(
+          !plane || !surface.cavity,
+          "Master cavity",
+          "has no meaning for a plane; remove it, the body is on the side that Master axis points away from");
+      section.require(sphere || surface.axis.norm() > 0.,
+                      "Master axis",
+                      std::string("must be given and not zero: ") +
+                          (surface.shape == Shape::cylinder ? "the direction of the cylinder"
+                                                            : "the normal out of the rigid body") +
+                          ", for example 0, 0, 1");
+      section.require(pair.master.body <= n_bodies,
+                      "Master body",
+                      "is " + std::to_string(pair.master.body) +
+                          "; give the number of the rigid body that carries the " + shape + ", 1 to " +
+                          std::to_string(n_bodies) + ", or 0 for none");
+      section.require(!pair.has_carried_master() || !is_given(surface.motion),
+                      "Master translation",
+                      "and the like have no effect on a " + shape +
+                          " that moves with its Master body; remove them, or say there how it moves");
+      check(section, surface.motion, "Master ", surface.motion.rotation_axis == Vector3() ? surface.axis : Vector3());
+    }
+  } // namespace
+
+  void ParameterChecks::check(const Section &section, const ContactPairParameters &pair, const unsigned int n_bodies)
+  {
+    check_friction(section, pair);
+    const bool adjusts = pair.contact_law != ContactPairParameters::ContactLaw::unilateral ||
+                         pair.initial_overclosure == ContactPairParameters::InitialOverclosure::adjust;
+    section.require(adjusts || pair.adjustment_distance == 0.,
+                    "Adjustment distance",
+                    "has no effect; set 'Initial overclosure = strain-free adjust', or remove it");
+    check(section, pair.slave, "Slave ", n_bodies, 1);
+    section.require(!pair.slave.boundary_ids.empty(),
+                    "Slave boundary ids",
+                    "is missing; give the boundary ids of the faces in contact");
+    check_master(section, pair, n_bodies);
+
+    using Scheme = ContactPairParameters::Scheme;
+    using Rule   = ContactPairParameters::QuadratureRule;
+    section.require(
+        pair.scheme == Scheme::nodal || pair.weights != ContactPairParameters::Weights::consistent,
+        "Weights",
+        "is consistent, which needs 'Scheme = nodal'; the other schemes bring their own weights: remove the key");
+    const unsigned int n = pair.quadrature_points;
+    section.require(n == 0 || pair.quadrature_rule != Rule::simpson || (n >= 3 && n % 2 == 1),
+                    "Quadrature points",
+                    "is " + std::to_string(n) + "; Simpson's rule takes an odd number from 3");
+    section.require(n == 0 || pair.quadrature_rule != Rule::newton_cotes || (n >= 2 && n <= 5) || n == 7,
+                    "Quadrature points",
+                    "is " + std::to_string(n) + "; Newton-Cotes rules with positive weights have 2, 3, 4, 5 or 7");
+  }
+} // namespace Nodus

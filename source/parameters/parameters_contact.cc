@@ -1,0 +1,318 @@
+#include "parameters/parameter_file.h"
+#include "parameters/parameter_keys.h"
+
+namespace Nodus
+{
+  namespace
+  {
+    using namespace ParameterKeys;
+
+    const Names<MasterSurfaceParameters::Shape> shape_names = {
+        {MasterSurfaceParameters::Shape::mesh, "mesh"},
+        {MasterSurfaceParameters::Shape::plane, "plane"},
+        {MasterSurfaceParameters::Shape::sphere, "sphere"},
+        {MasterSurfaceParameters::Shape::cylinder, "cylinder"},
+        {MasterSurfaceParameters::Shape::paraboloid, "paraboloid"}};
+
+    const Names<ContactPairParameters::Scheme> scheme_names = {
+        {ContactPairParameters::Scheme::nodal, "nodal"},
+        {ContactPairParameters::Scheme::integration_point, "integration point"},
+        {ContactPairParameters::Scheme::averaged, "averaged"}};
+
+    const Names<ContactPairParameters::Integration> integration_names = {
+        {ContactPairParameters::Integration::face, "face"}, {ContactPairParameters::Integration::segment, "segment"}};
+
+    const Names<ContactPairParameters::QuadratureRule> rule_names = {
+        {ContactPairParameters::QuadratureRule::gauss, "Gauss"},
+        {ContactPairParameters::QuadratureRule::simpson, "Simpson"},
+        {ContactPairParameters::QuadratureRule::newton_cotes, "Newton-Cotes"}};
+
+    const Names<ContactPairParameters::Surface> surface_names = {
+        {ContactPairParameters::Surface::faceted, "faceted"}, {ContactPairParameters::Surface::smoothed, "smoothed"}};
+
+    const Names<ContactPairParameters::SurfaceMeasure> surface_measure_names = {
+        {ContactPairParameters::SurfaceMeasure::current, "current"},
+        {ContactPairParameters::SurfaceMeasure::reference, "reference"}};
+
+    const Names<ContactPairParameters::Weights> weights_names = {
+        {ContactPairParameters::Weights::nodal_quadrature, "nodal quadrature"},
+        {ContactPairParameters::Weights::dual, "dual"},
+        {ContactPairParameters::Weights::consistent, "consistent"}};
+
+    const Names<ContactPairParameters::Normal> normal_names = {
+        {ContactPairParameters::Normal::master_facet, "master facet"},
+        {ContactPairParameters::Normal::averaged, "averaged"},
+        {ContactPairParameters::Normal::slave, "slave"}};
+
+    const Names<ContactPairParameters::InitialStatus> initial_status_names = {
+        {ContactPairParameters::InitialStatus::by_gap, "by gap"},
+        {ContactPairParameters::InitialStatus::closed, "closed"},
+        {ContactPairParameters::InitialStatus::open, "open"}};
+
+    const Names<ContactPairParameters::ContactLaw> contact_law_names = {
+        {ContactPairParameters::ContactLaw::unilateral, "unilateral"},
+        {ContactPairParameters::ContactLaw::bilateral, "bilateral"},
+        {ContactPairParameters::ContactLaw::tied, "tied"}};
+
+    const Names<ContactPairParameters::FrictionLaw> friction_law_names = {
+        {ContactPairParameters::FrictionLaw::coulomb, "Coulomb"},
+        {ContactPairParameters::FrictionLaw::tresca, "Tresca"}};
+
+    const Names<ContactPairParameters::InitialOverclosure> overclosure_names = {
+        {ContactPairParameters::InitialOverclosure::resolve, "resolve in the first increment"},
+        {ContactPairParameters::InitialOverclosure::adjust, "strain-free adjust"},
+        {ContactPairParameters::InitialOverclosure::interference, "interference fit"}};
+
+    const Names<ContactPairParameters::StatusTest> status_test_names = {
+        {ContactPairParameters::StatusTest::weighted, "weighted"}, {ContactPairParameters::StatusTest::raw, "raw"}};
+
+  } // namespace
+
+  std::string text_of(const MasterSurfaceParameters::Shape shape)
+  {
+    return text_of(shape, shape_names);
+  }
+
+  std::string text_of(const ContactPairParameters::Scheme scheme)
+  {
+    return text_of(scheme, scheme_names);
+  }
+
+  std::string text_of(const ContactPairParameters::Integration integration)
+  {
+    return text_of(integration, integration_names);
+  }
+
+  std::string text_of(const ContactPairParameters::ContactLaw law)
+  {
+    return text_of(law, contact_law_names);
+  }
+
+  std::string text_of(const ContactPairParameters::Surface surface)
+  {
+    return text_of(surface, surface_names);
+  }
+
+  /// @p prefix is "Slave ", "Master " or empty.
+  void ParameterKeys::add_region(ParameterHandler  &prm,
+                                 const std::string &prefix,
+                                 RegionParameters  &region,
+                                 const std::string &every_body,
+                                 const std::string &where)
+  {
+    prm.add_parameter(prefixed(prefix, "Body"), region.body, "Number of the body [-]" + every_body + ".", count);
+    prm.add_parameter(
+        prefixed(prefix, "Boundary ids"), region.boundary_ids, "Boundary ids of its faces [-], e.g. 1, 5.", ids);
+    prm.add_parameter(prefixed(prefix, "Where"),
+                      region.where,
+                      "Condition on the reference coordinates x, y, z [length] that thins the faces out, e.g. "
+                      "abs(x)<1e-9; empty: no condition. " +
+                          where,
+                      Patterns::Anything());
+  }
+
+  void ParameterKeys::add_expressions(ParameterHandler         &prm,
+                                      const std::string        &key,
+                                      std::vector<std::string> &expressions,
+                                      const std::string        &documentation)
+  {
+    std::string default_text;
+    for (const std::string &expression : expressions)
+      default_text += (default_text.empty() ? "" : "; ") + expression;
+    prm.declare_entry(key, default_text, anything_separated_by(";"), documentation);
+    prm.add_action(key,
+                   [&expressions](const std::string &text)
+                   { expressions = dealii::Utilities::split_string_list(text, ';'); });
+  }
+
+  void ParameterKeys::add_motion(ParameterHandler           &prm,
+                                 const std::string          &prefix,
+                                 PrescribedMotionParameters &motion,
+                                 const std::string          &axis,
+                                 const std::string          &centre)
+  {
+    add_expressions(prm,
+                    prefixed(prefix, "Translation"),
+                    motion.translation,
+                    "Shift of the rigid body at time t [length]: three expressions of t, separated by ';'.");
+    prm.add_parameter(
+        prefixed(prefix, "Rotation"),
+        motion.rotation,
+        "Angle by which the rigid body has turned at time t, before the translation [degrees]: expression "
+        "of t, e.g. 90*t.",
+        Patterns::Anything());
+    prm.add_parameter(prefixed(prefix, "Rotation axis"),
+                      motion.rotation_axis,
+                      "Axis about which the rigid body turns, right-handed [-]; three numbers" + axis + ".");
+    prm.add_parameter(
+        prefixed(prefix, "Rotation centre"),
+        motion.rotation_centre,
+        "Point that the rotation of the rigid body leaves where it is [length]; three numbers, empty: " + centre + ".",
+        numbers);
+  }
+
+  /// A rigid surface instead of a meshed master.
+  static void add_master_surface(ParameterKeys::ParameterHandler &prm, MasterSurfaceParameters &surface)
+  {
+    using namespace ParameterKeys;
+    add_choice(
+        prm,
+        "Master surface",
+        surface.shape,
+        shape_names,
+        "What the slave touches [-]: faces of a mesh, or a rigid surface in closed form, without boundary ids. It "
+        "moves "
+        "as Master translation and Master rotation say, or, with a Master body, with that rigid body. A paraboloid is "
+        "one of revolution.");
+    prm.add_parameter("Master point",
+                      surface.point,
+                      "Rigid surface: a point of the plane, the centre of the sphere, a point on the axis of the "
+                      "cylinder, the apex of the paraboloid, at t = 0 [length]; three numbers.");
+    prm.add_parameter("Master axis",
+                      surface.axis,
+                      "Rigid surface: axis of the cylinder; normal of the plane, or of the paraboloid at its apex, out "
+                      "of the rigid body, at t = 0 [-]; three numbers.");
+    prm.add_parameter("Master radius",
+                      surface.radius,
+                      "Rigid surface: radius of sphere or cylinder, radius of curvature of the paraboloid at its apex "
+                      "[length], > 0.",
+                      not_negative);
+    prm.add_parameter("Master cavity",
+                      surface.cavity,
+                      "Rigid surface: whether the slave is inside of the sphere, cylinder or paraboloid, and the rigid "
+                      "body around it [-].");
+    add_motion(prm, "Master ", surface.motion, "; zero: Master axis", "Master point");
+  }
+
+  void ParameterKeys::add_contact_pair(ParameterHandler &prm, ContactPairParameters &pair)
+  {
+    const std::string where = "It is asked at the centres of the faces.";
+    prm.add_parameter("Name", pair.name, "Name in tables and messages [-]; empty: pair <n>.", Patterns::Anything());
+    add_region(prm, "Slave ", pair.slave, " that carries the contact pressures, better the softer or finer one", where);
+    add_region(prm, "Master ", pair.master, " that the slave nodes are projected onto", where);
+    add_master_surface(prm, pair.master_surface);
+    add_choice(prm,
+               "Scheme",
+               pair.scheme,
+               scheme_names,
+               "Where gaps and statuses are evaluated [-]: at the slave nodes, at the integration points of the slave "
+               "faces, or at the slave nodes with jumps averaged over their faces (mortar).");
+    add_choice(
+        prm,
+        "Integration",
+        pair.integration,
+        integration_names,
+        "Averaged scheme [-]: over whole slave faces with a fixed rule, or exactly over the overlaps of slave and "
+        "master faces.");
+    add_choice(prm,
+               "Quadrature rule",
+               pair.quadrature_rule,
+               rule_names,
+               "Rule on slave faces of the integration point scheme and of the averaged scheme by face [-].");
+    prm.add_parameter("Quadrature points",
+                      pair.quadrature_points,
+                      "Points of that rule in each direction of a face [-]: Gauss any, Simpson odd, Newton-Cotes 2, 3, "
+                      "4, 5 or 7; 0: automatic.",
+                      Patterns::Integer(0, 20));
+    add_choice(
+        prm,
+        "Contact law",
+        pair.contact_law,
+        contact_law_names,
+        "What the surfaces do once closed [-]: push only, or never open again but slide, or stay tied where they "
+        "start.");
+    add_choice(prm,
+               "Friction law",
+               pair.friction_law,
+               friction_law_names,
+               "Limit of the friction traction [-]: friction coefficient times pressure, or the shear limit.");
+    prm.add_parameter(
+        "Friction coefficient", pair.friction_coefficient, "Coulomb's coefficient [-]; 0: no friction.", not_negative);
+    prm.add_parameter("Second friction coefficient",
+                      pair.second_friction_coefficient,
+                      "Of orthotropic friction, across the friction direction [-]; 0: as the first one. The limits are "
+                      "the half axes of an ellipse, and slip is normal to it.",
+                      not_negative);
+    prm.add_parameter("Friction direction",
+                      pair.friction_direction,
+                      "Of orthotropic friction: direction in space of the first coefficient, projected on the surface "
+                      "[-]; three numbers.");
+    prm.add_parameter("Friction factor",
+                      pair.friction_factor,
+                      "Factor on the friction coefficients, of Tresca on the shear limit [-]: expression of the "
+                      "reference coordinates x, y, z [length] and of the slip rate v [length/time], e.g. "
+                      "0.6+0.4*exp(-v/10). The slip rate is the slip of the increment over its time.",
+                      Patterns::Anything());
+    prm.add_parameter("Shear limit",
+                      pair.shear_limit,
+                      "Friction tractions do not exceed this [pressure]; 0: no limit (Coulomb).",
+                      not_negative);
+    prm.add_parameter("Normal augmentation factor",
+                      pair.normal_augmentation_factor,
+                      "Factor on Young's modulus over face size, the scale of gaps against pressures [-]. It "
+                      "changes the path of the iteration, not the solution.",
+                      positive);
+    prm.add_parameter("Tangential augmentation factor",
+                      pair.tangential_augmentation_factor,
+                      "Factor on the scale of slips against friction tractions [-]. It changes the path of the "
+                      "iteration, not the solution.",
+                      positive);
+    add_choice(
+        prm, "Surface measure", pair.surface_measure, surface_measure_names, "Area that pressures refer to [-].");
+    add_choice(prm,
+               "Weights",
+               pair.weights,
+               weights_names,
+               "Integration of the contact terms over slave faces [-], nodal scheme only.");
+    add_choice(prm,
+               "Surface",
+               pair.surface,
+               surface_names,
+               "Faces of degree 1 as they are, or rounded to meet the averaged normals of the nodes [-]; edges sharper "
+               "than 45 degrees stay.");
+    add_choice(prm,
+               "Normal",
+               pair.normal,
+               normal_names,
+               "Contact normal [-]: of the master face, averaged over the faces at each master node, or averaged over "
+               "the faces at the slave node.");
+    prm.add_parameter("Search distance",
+                      pair.search_distance,
+                      "Slave nodes farther than this from the master have no partner [length]; 0: automatic.",
+                      not_negative);
+    prm.add_parameter("Projection tolerance",
+                      pair.projection_tolerance,
+                      "How far a projection may hang over the rim of the master surface [face sizes]. A site that is "
+                      "closed keeps its "
+                      "partner up to twice that.",
+                      not_negative);
+    add_choice(prm,
+               "Initial status",
+               pair.initial_status,
+               initial_status_names,
+               "Status of the slave nodes at the start [-].");
+    add_choice(
+        prm,
+        "Initial overclosure",
+        pair.initial_overclosure,
+        overclosure_names,
+        "What happens to slave nodes that start inside the master [-]: they are pushed out in the first increment; "
+        "or stay where they are, free of stress; or are pushed out in the course of the first interval of the "
+        "load path. Tied and bilateral pairs stay where they are.");
+    prm.add_parameter("Adjustment distance",
+                      pair.adjustment_distance,
+                      "Gaps up to this, too, start closed and free of stress, if overclosures stay [length]; tied and "
+                      "bilateral pairs, 0: a tenth of the mean slave face.",
+                      not_negative);
+    prm.add_parameter("Overclosure limit",
+                      pair.overclosure_limit,
+                      "A run with a larger initial overclosure is refused [length]; 0: half of the mean slave face.",
+                      not_negative);
+    add_choice(prm,
+               "Status test",
+               pair.status_test,
+               status_test_names,
+               "Pressure used to decide between open and closed [-]: the weighted one is the nodal force over the "
+               "nodal area.");
+  }
+} // namespace Nodus

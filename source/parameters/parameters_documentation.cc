@@ -1,0 +1,173 @@
+#include "base/suggestion.h"
+#include "parameters/generators.h"
+#include "parameters/parameter_file.h"
+#include <nodus/parameters/parameters.h>
+
+#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/utilities.h>
+
+#include <algorithm>
+#include <cctype>
+#include <regex>
+
+namespace Nodus
+{
+  namespace
+  {
+    const std::regex numbered(" 1(?=/|$)");
+
+    /// "Body 1/Material" -> "Body <n> / Material"
+    std::string title_of(const std::string &section)
+    {
+      return std::regex_replace(std::regex_replace(section, numbered, " `<n>`"), std::regex("/"), " / ");
+    }
+
+    std::string lower_case(std::string text)
+    {
+      std::transform(text.begin(), text.end(), text.begin(), [](const unsigned char c) { return std::tolower(c); });
+      return text;
+    }
+
+    /// What would end a cell of a Markdown table is escaped.
+    std::string cell(const std::string &text)
+    {
+      const std::string escaped = std::regex_replace(text, std::regex("[|<>*]"), "\\$&");
+      return escaped.empty() ? " " : ' ' + escaped + ' ';
+    }
+    bool has(const std::string &text, const std::string &wanted)
+    {
+      return lower_case(text).find(wanted) != std::string::npos;
+    }
+
+    bool has_words(const std::string &text, const std::string &wanted)
+    {
+      const auto words = dealii::Utilities::split_string_list(wanted, ' ');
+      return std::all_of(words.begin(), words.end(), [&](const std::string &word) { return has(text, word); });
+    }
+
+    /// "direct, block" of "one of: direct, block"; empty where there is no choice.
+    std::string choices(const DeclaredKey &key)
+    {
+      const std::string before = "one of: ";
+      const auto        begin  = key.allowed.find(before);
+      return begin == std::string::npos ? "" : key.allowed.substr(begin + before.size());
+    }
+
+    /// All that is to be said about the keys that are @p meant.
+    template <typename Predicate>
+    std::string entries(const std::vector<DeclaredKey> &keys, const Predicate &meant)
+    {
+      std::string text;
+      for (const auto &k : keys)
+        if (meant(k))
+          text += (text.empty() ? "" : "\n") + std::regex_replace(k.path(), numbered, " <n>") + "\n  default  " +
+                  (k.default_value.empty() ? "(empty)" : k.default_value) + "\n  allowed  " + k.allowed +
+                  "\n  unit     " + k.unit() + "\n  meaning  " + k.documentation + '\n';
+      return text;
+    }
+
+    /// The mesh generators that have @p wanted in their names.
+    std::string generators(const std::string &wanted)
+    {
+      std::string text;
+      for (const std::string &name : Generators::names())
+        if (has(name, wanted))
+          text += "\nGenerator " + name + "\n  arguments  " +
+                  std::regex_replace(Generators::arguments(name), std::regex(" : "), "\n           : ") +
+                  "\n  example    " + Generators::example(name) + '\n';
+      return text;
+    }
+  } // namespace
+
+  std::vector<DeclaredKey> Parameters::reference_keys()
+  {
+    Parameters parameters;
+    parameters.bodies.resize(1);
+    parameters.boundary_conditions.resize(1);
+    parameters.contact_pairs.resize(1);
+    dealii::ParameterHandler prm;
+    parameters.add_parameters(prm);
+    return declared_keys(prm);
+  }
+
+  std::string Parameters::explain(const std::string &key)
+  {
+    // any number of a body, condition or pair, and blanks around '/' as in the titles of the reference
+    std::string wanted = std::regex_replace(lower_case(dealii::Utilities::trim(key)), std::regex("\\s*/\\s*"), "/");
+    wanted             = std::regex_replace(wanted, std::regex("(body|condition|pair) ([0-9]+|<n>)(?=/|$)"), "$1 1");
+
+    const std::vector<DeclaredKey> keys = reference_keys();
+    std::string                    text;
+    // What is meant is a part of a path or of a choice, or else words of a path in any order, or else of a meaning.
+    if (!wanted.empty())
+    {
+      text = entries(keys, [&](const DeclaredKey &k) { return has(k.path(), wanted) || has(choices(k), wanted); });
+      if (const std::string more = generators(wanted); !more.empty())
+        text += text.empty() ? more.substr(1) : more;
+      if (text.empty())
+        text = entries(keys, [&](const DeclaredKey &k) { return has_words(k.path(), wanted); });
+      if (text.empty())
+        text = entries(keys, [&](const DeclaredKey &k) { return has_words(k.documentation, wanted); });
+    }
+    if (text.empty())
+    {
+      std::vector<std::string> names = Generators::names();
+      for (const auto &k : keys)
+      {
+        std::vector<std::string> list = dealii::Utilities::split_string_list(choices(k), ',');
+        list.insert(list.begin(), k.key);
+        for (const std::string &name : list)
+          if (std::find(names.begin(), names.end(), name) == names.end())
+            names.push_back(name);
+      }
+      std::vector<std::string> near;
+      if (!wanted.empty())
+        near = nearest(key.substr(key.rfind('/') + 1), names);
+      // several words, some of which may be right
+      for (const std::string &word : dealii::Utilities::split_string_list(wanted, ' '))
+        if (near.empty() && word.size() > 2)
+          near = nearest(word, names);
+      throw InputError("--explain: there is no key like '" + key + "'" +
+                       (near.empty() ? "; nodus --document lists all keys" : did_you_mean(near)));
+    }
+    return text;
+  }
+
+  std::string Parameters::documentation()
+  {
+    std::string text    = R"(# Parameters
+
+Written by `nodus --document`; edit the descriptions in source/parameters*.cc.
+
+A case is a text file. `set Key = value` sets a key, `subsection Name` ... `end` enclose the keys of a section, `#`
+starts a comment and a `\` at the end of a line continues it. Bodies, boundary conditions and contact pairs are
+numbered 1, 2, 3, ... without gaps. Unknown keys, keys set twice and values out of range are refused. On the command
+line `--set "Section/Key=value"` replaces a value of the file, for example
+`--set "Body 1/Material/Poisson's ratio=0.4"`, and `nodus --explain "friction"` prints what is said here about all keys
+with that word in their path or among their choices, or else in their meaning.
+
+A file that ends in .json says the same as nested objects, with arrays for lists if you like:
+`{"Title": "...", "Body 1": {"Name": "block", "Material": {"Young's modulus": 2000}}, "Load stepping": {"Increments":
+[4, 20]}}`.
+
+Units are yours to choose, but consistently: N, mm and MPa, or N, m and Pa. The unit of a key is in square brackets,
+[-] is none. The time t orders the loads and has no unit. Expressions may use x, y, z (reference coordinates), t where
+a value depends on time, `pi` and the functions of muParser and deal.II's FunctionParser.
+)";
+    std::string section = "none yet";
+    for (const auto &key : reference_keys())
+    {
+      if (key.section != section)
+        text += "\n## " + (key.section.empty() ? "Top level" : title_of(key.section)) +
+                "\n\n| Key | Default | Allowed | Meaning |\n|---|---|---|---|\n";
+      section = key.section;
+      text += '|' + cell(key.key) + '|' + cell(key.default_value) + '|' + cell(key.allowed) + '|' +
+              cell(key.documentation) + "|\n";
+    }
+    text += "\n## Generators\n\nAll arguments are to be given, separated by ':'.\n\n"
+            "| Generator | Arguments | Example |\n|---|---|---|\n";
+    for (const std::string &name : Generators::names())
+      text += '|' + cell(name) + '|' + cell(Generators::arguments(name)) + "| `" + Generators::example(name) + "` |\n";
+    return text;
+  }
+} // namespace Nodus

@@ -1,0 +1,157 @@
+#ifndef nodus_rigid_rigid_bodies_h
+#define nodus_rigid_rigid_bodies_h
+
+#include "mesh/bodies.h"
+#include "rigid/prescribed_motion.h"
+#include <nodus/base/types.h>
+
+#include <deal.II/base/function_parser.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/mapping.h>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Nodus
+{
+  /// The rigid bodies with a mesh that forces and moments drive: those with free components. The motion of each has six
+  /// components about global axes, translation of its centre and rotation about it: x = c + T + R (X - c).
+  ///
+  /// The unknowns of an increment are T and the rotation vector theta of the increment, R = exp(theta) R_begin; those
+  /// that are not free follow the prescribed motion, theta the increment of its rotation vector. Every rank holds all
+  /// of it.
+  class RigidBodies
+  {
+  public:
+    static constexpr unsigned int n_components = 2 * dim;
+    using Components                           = std::array<double, n_components>;
+
+    /// At rest. @throws InputError on every rank where an expression does not parse.
+    RigidBodies(const std::vector<BodyParameters> &parameters, const Bodies &bodies);
+
+    unsigned int size() const
+    {
+      return bodies_.size();
+    }
+    /// Index of a driven one among all bodies.
+    unsigned int body(const unsigned int i) const
+    {
+      return bodies_[i].number;
+    }
+    const std::string &name(const unsigned int i) const
+    {
+      return bodies_[i].name;
+    }
+    bool is_free(const unsigned int i, const unsigned int component) const
+    {
+      return bodies_[i].free[component];
+    }
+    /// Half of the diagonal of its box [length].
+    double extent(const unsigned int i) const
+    {
+      return bodies_[i].extent;
+    }
+
+    /// What is at node @p i of this rank: its first degree of freedom and its reference position.
+    struct Node
+    {
+      DoFIndex dof;
+      Point    X;
+    };
+    /// Its owned nodes on the mesh as it is.
+    const std::vector<Node> &nodes(const unsigned int i) const
+    {
+      return bodies_[i].nodes;
+    }
+    /// Once the mesh is new.
+    void find_nodes(const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping);
+
+    /// Loads and prescribed components are those of time @p t from here. @throws InputError on every rank
+    void set_time(double t);
+
+    /// Force and moment about the centre, zero where prescribed.
+    const Components &load(const unsigned int i) const
+    {
+      return bodies_[i].load;
+    }
+    /// Where the centre is now.
+    Point centre(const unsigned int i) const
+    {
+      return Point(bodies_[i].centre + bodies_[i].now.translation);
+    }
+    /// What the unknowns still lack of the prescribed values, zero at free components.
+    Components missing(unsigned int i) const;
+    /// The spin of R by a variation of theta: delta R = [spin delta theta]x R.
+    dealii::Tensor<2, dim> spin(unsigned int i) const;
+
+    /// unknowns += factor * correction, six of each body. @throws SolverFailure where a body turns by more than half
+    /// a turn in the increment.
+    void advance(double factor, const std::vector<double> &correction);
+    /// Sets the displacements of the nodes, owned ones. Collective.
+    void move(Vector &u) const;
+
+    /// Unknowns of the increment.
+    struct Unknowns
+    {
+      Vector3 translation, rotation;
+    };
+    std::vector<Unknowns> unknowns() const;
+    void                  set_unknowns(const std::vector<Unknowns> &unknowns);
+
+    /// What is left of the past.
+    struct State
+    {
+      Vector3                translation;
+      dealii::Tensor<2, dim> rotation = dealii::unit_symmetric_tensor<dim>();
+      Vector3                prescribed_rotation; ///< rotation vector of the prescribed motion so far
+      Components             applied{};           ///< forces and moments, also those that hold prescribed components
+
+      template <typename Archive>
+      void serialize(Archive &archive, const unsigned int)
+      {
+        archive &translation &rotation &prescribed_rotation;
+        for (double &value : applied)
+          archive &value;
+      }
+    };
+    /// Keeps the motion, and that @p applied acts on each body at its end.
+    void               commit(const std::vector<Components> &applied);
+    void               roll_back();
+    std::vector<State> committed() const;
+    /// Takes back what committed() gave.
+    void restore(const std::vector<State> &states);
+
+    /// Work of the mean of the committed and the @p applied forces and moments in the increment [energy].
+    double work(const std::vector<Components> &applied) const;
+    /// Of the centre from the start.
+    const Vector3 &translation(const unsigned int i) const
+    {
+      return bodies_[i].now.translation;
+    }
+    /// Rotation vector from the start, no longer than half a turn [radians].
+    Vector3 rotation(unsigned int i) const;
+
+  private:
+    struct Body
+    {
+      unsigned int                                     number;
+      std::string                                      name;
+      std::array<bool, n_components>                   free{};
+      double                                           extent;
+      Point                                            centre; ///< at the start
+      std::unique_ptr<const PrescribedMotion>          motion;
+      std::unique_ptr<const dealii::FunctionParser<1>> loads;
+      std::vector<Node>                                nodes;
+      Components                                       load{};
+      Unknowns                                         prescribed, now; ///< prescribed: at the time set
+      State                                            committed;
+      Vector3                                          prescribed_rotation; ///< at the time set
+    };
+    std::string       label(const Body &body) const;
+    std::vector<Body> bodies_;
+  };
+} // namespace Nodus
+
+#endif

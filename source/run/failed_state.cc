@@ -1,0 +1,329 @@
+#include "base/complete_file.h"
+#include "contact/tractions.h"
+#include "run/contact_problem_implementation.h"
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+// What is kept of an increment that fails, before it is rolled back: evidence for the diagnosis, and its fields.
+
+namespace Nodus
+{
+  namespace
+  {
+    constexpr unsigned int n_worst_nodes = 5, n_worst_sites = 6;
+
+    /// Something on this rank, and what it is sorted by.
+    template <typename Item>
+    struct Ranked
+    {
+      double   value;
+      DoFIndex number; ///< on the whole mesh or surface
+      Item     item;
+
+      bool operator<(const Ranked &other) const
+      {
+        return value != other.value ? value > other.value : number < other.number;
+      }
+      template <typename Archive>
+      void serialize(Archive &archive, const unsigned int)
+      {
+        archive &value &number &item;
+      }
+    };
+
+    /// The first @p n of all ranks, the same on every rank: those with the largest value first. Collective.
+    template <typename Item>
+    std::vector<Item> first_of_all(std::vector<Ranked<Item>> items, const unsigned int n, const MPI_Comm communicator)
+    {
+      const auto keep = [&](std::vector<Ranked<Item>> &list)
+      {
+        std::sort(list.begin(), list.end());
+        list.erase(list.begin() + std::min<std::size_t>(n, list.size()), list.end());
+      };
+      keep(items);
+      std::vector<Ranked<Item>> all;
+      for (const auto &part : dealii::Utilities::MPI::all_gather(communicator, items))
+        all.insert(all.end(), part.begin(), part.end());
+      keep(all);
+      std::vector<Item> first;
+      for (const auto &ranked : all)
+        first.push_back(ranked.item);
+      return first;
+    }
+
+    std::array<double, dim> three(const double a, const double b, const double c)
+    {
+      return {{a, b, c}};
+    }
+  } // namespace
+
+  /// Records why the increment at hand failed, at the state that it failed in. @returns where to read more, for the
+  /// message: a disk that does not take it must not hide why the run ends. Collective.
+  std::string ContactProblem::Implementation::diagnose(const SolverFailure &failure, const bool may_shrink)
+  {
+    const auto timer = profile.time(Phase::output);
+    try
+    {
+      FailureEvidence          evidence = evidence_of(failure, may_shrink);
+      const std::vector<float> det_F    = find_distorted_cells(evidence);
+      if (vtu)
+      {
+        evidence.state = vtu->state_file("failed_state");
+        write_failed_state("failed_state", det_F);
+      }
+      throw_on_every_rank(diagnosis.write(evidence), communicator);
+      return "; " + parameters.output.results_folder + "/diagnosis.md says more";
+    }
+    catch (const InputError &error)
+    {
+      return std::string("; there is no diagnosis: ") + error.what();
+    }
+  }
+
+  FailureEvidence ContactProblem::Implementation::evidence_of(const SolverFailure &failure, const bool may_shrink)
+  {
+    // Contact at the last iterate, whose bulk may be the reason why the rest of its residual was not computed.
+    gather_state();
+    state.prescribed.assign(state.x.size(), Vector3());
+    residual = contact->assemble(state, system);
+
+    FailureEvidence evidence;
+    evidence.kind          = failure.kind();
+    evidence.message       = failure.what();
+    evidence.converged     = path.time();
+    evidence.linear_solver = linear_solver_parameters.type;
+    evidence.force_scale   = force_scale;
+    evidence.may_shrink    = may_shrink;
+    const OwnedNodes nodes(dof_handler, *mapping);
+    find_worst_nodes(nodes, evidence);
+    find_changing_sites(evidence);
+    find_partners(evidence);
+    if (failure.kind() == SolverFailure::Kind::over_constraint)
+      find_repeated_constraint(evidence);
+
+    for (const auto &motion : free_motions(nodes))
+      evidence.free_motions.push_back(motion.text);
+    for (const auto &motion : free_motions(nodes, true))
+      evidence.left_free.push_back(motion.text);
+    propose_springs(evidence);
+    return evidence;
+  }
+
+  void ContactProblem::Implementation::find_worst_nodes(const OwnedNodes &nodes, FailureEvidence &evidence) const
+  {
+    const dealii::IndexSet          &owned = surfaces->layout().owned[0];
+    std::map<DoFIndex, unsigned int> slaves; // by the first degree of freedom
+    for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
+      if (surfaces->has_status(k))
+        slaves[surfaces->nodes()[surfaces->slave_nodes()[k].node].dofs[0]] = k;
+    std::vector<Ranked<FailureEvidence::Node>> items;
+    for (unsigned int n = 0; n < nodes.X.size(); ++n)
+    {
+      FailureEvidence::Node node;
+      node.body            = nodes.body[n];
+      node.X               = nodes.X[n];
+      node.x               = nodes.X[n];
+      const DoFIndex first = owned.nth_index_in_set(dim * n);
+      if (const auto slave = slaves.find(first); slave != slaves.end())
+      {
+        node.pair     = surfaces->pair(slave->second);
+        node.statuses = diagnosis.statuses(slave->second);
+      }
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        node.force[c] = out_of_balance(first + c);
+        node.x[c] += solution.block(0)(first + c);
+      }
+      if (node.force.norm() > 0.)
+        items.push_back({node.force.norm(), first, node});
+    }
+    evidence.worst_nodes = first_of_all(items, n_worst_nodes, communicator);
+  }
+
+  void ContactProblem::Implementation::find_changing_sites(FailureEvidence &evidence) const
+  {
+    std::vector<Ranked<FailureEvidence::Site>> items;
+    for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
+      if (surfaces->is_owned(s) && status->ledger(s).changes > 0)
+      {
+        FailureEvidence::Site site{surfaces->pair(s),
+                                   surfaces->is_point(s),
+                                   surfaces->site_position(s),
+                                   Point(),
+                                   status->ledger(s),
+                                   diagnosis.statuses(s)};
+        if (site.is_point)
+          for (auto e = jump.begin(s); e < jump.middle(s); ++e)
+            site.x += e->weight * Vector3(state.x[e->node]);
+        else
+          site.x = state.x[surfaces->slave_nodes()[s].node];
+        items.push_back({double(site.ledger.changes), surfaces->order(s), site});
+      }
+    evidence.n_changed_sites = dealii::Utilities::MPI::sum<unsigned int>(items.size(), communicator);
+    evidence.changing_sites  = first_of_all(items, n_worst_sites, communicator);
+  }
+
+  void ContactProblem::Implementation::find_partners(FailureEvidence &evidence) const
+  {
+    evidence.pairs.resize(surfaces->n_pairs());
+    std::vector<std::vector<Ranked<Point>>> lost(surfaces->n_pairs());
+    for (unsigned int p = 0; p < surfaces->n_pairs(); ++p)
+      evidence.pairs[p].face_size = surfaces->face_size(p);
+    for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
+    {
+      if (!surfaces->is_owned(s) || !surfaces->has_status(s))
+        continue;
+      FailureEvidence::Pair &pair = evidence.pairs[surfaces->pair(s)];
+      ++pair.sites;
+      pair.closed += status->contact(s);
+      pair.slipping += status->contact(s) && status->status(s) == ContactStatus::slip;
+      if (pairing[s].found)
+      {
+        const std::array<double, 2> slip = contact->slip(state, s);
+        pair.sliding                     = std::max(pair.sliding, std::hypot(slip[0], slip[1]) / pair.face_size);
+        if (!status->contact(s))
+          pair.penetration = std::max(pair.penetration, contact->distance(state, s) / pair.face_size);
+        continue;
+      }
+      ++pair.unpaired;
+      if (status->kept(s).front() == 0.)
+        continue;
+      ++pair.lost;
+      lost[surfaces->pair(s)].push_back({0., surfaces->order(s), surfaces->site_position(s)});
+    }
+    for (unsigned int p = 0; p < surfaces->n_pairs(); ++p)
+    {
+      FailureEvidence::Pair &pair = evidence.pairs[p];
+      for (unsigned int *count : {&pair.sites, &pair.closed, &pair.slipping, &pair.unpaired, &pair.lost})
+        *count = dealii::Utilities::MPI::sum(*count, communicator);
+      for (double *value : {&pair.sliding, &pair.penetration})
+        *value = dealii::Utilities::MPI::max(*value, communicator);
+      for (const Point &X : first_of_all(lost[p], 1, communicator))
+        pair.lost_X = X;
+      pair.reach = geometry ? geometry->reach[p] : 0.;
+    }
+  }
+
+  /// @returns the smallest det F at the quadrature points of each active cell of this rank.
+  std::vector<float> ContactProblem::Implementation::find_distorted_cells(FailureEvidence &evidence)
+  {
+    relevant_u = solution.block(0);
+    const dealii::QGauss<dim>                quadrature(parameters.degree + 1);
+    dealii::FEValues<dim>                    values(*mapping, fe, quadrature, dealii::update_gradients);
+    const dealii::FEValuesExtractors::Vector displacement(0);
+    std::vector<dealii::Tensor<2, dim>>      gradients(quadrature.size());
+    std::vector<float>                       det_F(bodies.triangulation().n_active_cells(), 1.f);
+
+    std::vector<Ranked<FailureEvidence::Cell>> worst; // of this rank
+    for (const auto &cell : dof_handler.active_cell_iterators())
+    {
+      if (!cell->is_locally_owned())
+        continue;
+      values.reinit(cell);
+      values[displacement].get_function_gradients(relevant_u, gradients);
+      double smallest = std::numeric_limits<double>::max();
+      for (const auto &gradient : gradients)
+      {
+        const double det = dealii::determinant(gradient + dealii::unit_symmetric_tensor<dim>());
+        smallest         = std::isfinite(det) ? std::min(smallest, det) : -std::numeric_limits<float>::max();
+      }
+      det_F[cell->active_cell_index()] = smallest;
+      evidence.inverted_cells += !(smallest > 0.);
+      evidence.distorted_cells += !(smallest > Diagnosis::distorted);
+      if (worst.empty() || smallest < worst.front().item.det_F)
+      {
+        dealii::Vector<double> u(fe.n_dofs_per_cell());
+        cell->get_dof_values(relevant_u, u);
+        Vector3 moved; // the mean of the nodes
+        for (unsigned int i = 0; i < u.size(); ++i)
+          moved[fe.system_to_component_index(i).first] += u[i] * dim / u.size();
+        worst = {{-smallest,
+                  cell->global_active_cell_index(),
+                  {smallest, cell->material_id(), cell->center(), cell->center() + moved}}};
+      }
+    }
+    for (unsigned int *count : {&evidence.inverted_cells, &evidence.distorted_cells})
+      *count = dealii::Utilities::MPI::sum(*count, communicator);
+    for (const FailureEvidence::Cell &cell : first_of_all(worst, 1, communicator))
+      evidence.worst_cell = cell;
+    return det_F;
+  }
+
+  /// The slave node of the multiplier that the linear solver found to be redundant.
+  void ContactProblem::Implementation::find_repeated_constraint(FailureEvidence &evidence) const
+  {
+    const BlockLayout &layout     = surfaces->layout();
+    const bool         pressure   = null_pivot < layout.Lambda(0, 0);
+    const DoFIndex     multiplier = pressure ? null_pivot - layout.lambda(0) : (null_pivot - layout.Lambda(0, 0)) / 2;
+    std::vector<Ranked<FailureEvidence::Constraint>> found;
+    for (unsigned int k = 0; k < surfaces->n_owned_slave_nodes(); ++k)
+      if (surfaces->multiplier(k) == multiplier)
+      {
+        const unsigned int          node = surfaces->slave_nodes()[k].node;
+        FailureEvidence::Constraint constraint{
+            surfaces->pair(k), surfaces->nodes()[node].X, pairing[k].normal, !pressure, {}};
+        for (unsigned int c = 0; c < dim; ++c)
+          constraint.prescribed[c] = surfaces->fixed(node, c);
+        found.push_back({0., multiplier, constraint});
+      }
+    for (const FailureEvidence::Constraint &constraint : first_of_all(found, 1, communicator))
+      evidence.constraint = constraint;
+  }
+
+  void ContactProblem::Implementation::write_failed_state(const std::string &name, const std::vector<float> &det_F)
+  {
+    const auto contact_fields = Nodus::contact_fields(
+        parameters.contact_pairs, *surfaces, pairing, weights, *status, *contact, state, residual);
+    const auto with_ghosts = [&](const Vector &v)
+    {
+      Vector ghosted(surfaces->layout().owned[0], relevant, communicator);
+      ghosted = v;
+      return ghosted;
+    };
+    // Three values to a node; off the slave surfaces they are zero.
+    const auto at_slave_nodes = [&](const auto &values)
+    {
+      Vector                    v(surfaces->layout().owned[0], communicator);
+      std::vector<unsigned int> place(surfaces->n_pairs(), 0); // of the next node among the fields of its pair
+      for (unsigned int k = 0; k < surfaces->slave_nodes().size(); ++k)
+      {
+        const SlaveNode              &slave = surfaces->slave_nodes()[k];
+        const std::array<double, dim> value = values(contact_fields[slave.pair], place[slave.pair]++);
+        if (k < surfaces->n_owned_slave_nodes())
+          for (unsigned int c = 0; c < dim; ++c)
+            v(surfaces->nodes()[slave.node].dofs[c]) = value[c];
+      }
+      v.compress(dealii::VectorOperation::insert);
+      return with_ghosts(v);
+    };
+    std::vector<VtuOutput::NodalField> fields;
+    fields.push_back({{"residual_force"}, with_ghosts(out_of_balance)});
+    if (surfaces->n_pairs() > 0)
+    {
+      fields.push_back({{"CPRESS", "COPEN", "CSTATUS"},
+                        at_slave_nodes([](const ContactFields &f, const unsigned int i)
+                                       { return three(f.pressure[i], f.gap[i], static_cast<double>(f.status[i])); })});
+      fields.push_back(
+          {{"status_changes", "cycle_period", "contradiction"},
+           at_slave_nodes(
+               [](const ContactFields &f, const unsigned int i)
+               { return three(double(f.status_changes[i]), double(f.cycle_period[i]), double(f.contradiction[i])); })});
+      fields.push_back(
+          {{"pair", "paired", "area"},
+           at_slave_nodes([&](const ContactFields &f, const unsigned int i)
+                          { return three(1. + (&f - contact_fields.data()), double(f.paired[i]), f.area[i]); })});
+      fields.push_back({{"friction_traction"},
+                        at_slave_nodes([](const ContactFields &f, const unsigned int i)
+                                       { return three(f.friction[i][0], f.friction[i][1], f.friction[i][2]); })});
+    }
+    vtu->write_state(name, path.target(), relevant_u, fields, det_F);
+  }
+} // namespace Nodus

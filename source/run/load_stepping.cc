@@ -1,0 +1,109 @@
+#include "run/load_stepping.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace Nodus
+{
+  namespace
+  {
+    /// Halvings up to the smallest increment where the user names none, and the most that there can be.
+    constexpr unsigned int default_halvings = 6, most_halvings = 20;
+    /// Times that differ by less than this fraction of the path are the same.
+    constexpr double same_time = 1e-12;
+  } // namespace
+
+  LoadStepping::LoadStepping(const LoadSteppingParameters &parameters)
+      : parameters_(parameters)
+  {
+    divide(0.);
+  }
+
+  void LoadStepping::divide(const double begin)
+  {
+    begin_ = begin;
+    if (finished())
+      return;
+    const double wanted = (interval_end() - interval_begin()) / parameters_.increments[interval_];
+    n_increments_       = parameters_.increments[interval_];
+    if (begin > interval_begin())
+      n_increments_ = std::max(1., std::ceil((interval_end() - begin) / wanted * (1. - same_time)));
+
+    const double size     = (interval_end() - begin) / n_increments_;
+    const double smallest = parameters_.minimum_increment * (1. - same_time);
+    n_halvings_           = 0;
+    while (parameters_.cut_back && n_halvings_ < (smallest > 0. ? most_halvings : default_halvings) &&
+           std::ldexp(size, -static_cast<int>(n_halvings_) - 1) >= smallest)
+      ++n_halvings_;
+    n_ticks_  = n_increments_ * base();
+    position_ = 0;
+    size_     = base();
+  }
+
+  LoadStepping::Ticks LoadStepping::end_position() const
+  {
+    return std::min(position_ + size_, n_ticks_);
+  }
+
+  double LoadStepping::time_of(const Ticks position) const
+  {
+    if (finished())
+      return parameters_.interval_ends.back();
+    return position == n_ticks_ ? interval_end()
+                                : begin_ + (interval_end() - begin_) * (static_cast<double>(position) / n_ticks_);
+  }
+
+  double LoadStepping::smallest() const
+  {
+    return (interval_end() - begin_) / n_ticks_;
+  }
+
+  void LoadStepping::accept(const unsigned int newton_iterations, const bool smooth)
+  {
+    position_ = end_position();
+    ++increment_;
+    if (position_ == n_ticks_)
+    {
+      ++interval_;
+      divide(interval_begin());
+      return;
+    }
+    if (!smooth || newton_iterations > parameters_.easy_iterations)
+      return;
+    const Ticks twice = 2 * size_;
+    // Up to the increments asked for only where it leads back to their times.
+    if (twice <= base() ? position_ % twice == 0
+                        : time_of(position_ + twice) - time() <= parameters_.maximum_increment * (1. + same_time))
+      size_ = twice;
+  }
+
+  bool LoadStepping::cut_back()
+  {
+    Ticks size = size_ / 2;
+    while (size > 0 && position_ + size >= end_position()) // an increment that the end of the interval had shortened
+      size /= 2;
+    if (!parameters_.cut_back || size == 0)
+      return false;
+    size_ = size;
+    return true;
+  }
+
+  void LoadStepping::continue_from(const LoadStepping &saved)
+  {
+    const LoadSteppingParameters asked = parameters_;
+    const auto                  &then  = saved.parameters_;
+    if (asked.interval_ends == then.interval_ends && asked.increments == then.increments &&
+        asked.cut_back == then.cut_back && asked.minimum_increment == then.minimum_increment)
+    {
+      *this       = saved;
+      parameters_ = asked;
+      return;
+    }
+    const double time = saved.time();
+    increment_        = saved.increment_;
+    interval_         = 0;
+    while (!finished() && interval_end() - time <= same_time * parameters_.interval_ends.back())
+      ++interval_;
+    divide(finished() ? time : std::max(time, interval_begin()));
+  }
+} // namespace Nodus

@@ -1,0 +1,346 @@
+#include "base/complete_file.h"
+#include "run/contact_problem_implementation.h"
+#include "run/nodal_state.h"
+#include <nodus/base/signals.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+#include <deal.II/grid/cell_id.h>
+
+#include <boost/crc.hpp>
+#include <boost/serialization/map.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+// What a checkpoint holds: the state that commit() keeps, and what of the run is not in the parameters.
+
+namespace Nodus
+{
+  namespace
+  {
+    /// Shared by all ranks.
+    struct Common
+    {
+      std::map<std::string, std::string> model; ///< that the state belongs to
+      LoadStepping                       path{LoadSteppingParameters()};
+      double                             stiffness_scale = 0.;
+      Energies                           energies;
+      std::vector<RigidBodies::State>    rigid_bodies;
+      Tables::Rows                       rows;
+      VtuOutput::Series                  series;
+
+      template <typename Archive>
+      void serialize(Archive &archive, const unsigned int)
+      {
+        archive &model &path &stiffness_scale &energies &rigid_bodies &series;
+        archive &rows.contact &rows.reactions &rows.energies &rows.iterations &rows.rigid_bodies;
+      }
+    };
+
+    std::string checksum_of(const std::string &file)
+    {
+      std::ifstream      stream(file, std::ios::binary);
+      boost::crc_32_type crc;
+      char               buffer[65536];
+      while (stream.read(buffer, sizeof buffer) || stream.gcount() > 0)
+        crc.process_bytes(buffer, stream.gcount());
+      return std::to_string(crc.checksum());
+    }
+
+    /// Names and places of files may change, their contents may not.
+    std::map<std::string, std::string> model_of(const Parameters &parameters)
+    {
+      std::map<std::string, std::string> model;
+      for (const auto &[key, value] : parameters.model())
+        if (const std::string last = key.substr(key.rfind('/') + 1); last != "Name")
+          model[key] = last == "Mesh file" && !value.empty() ? "a file with checksum " + checksum_of(value) : value;
+      return model;
+    }
+
+    std::string first_difference(const std::map<std::string, std::string> &then,
+                                 const std::map<std::string, std::string> &now)
+    {
+      for (const auto &[key, value] : now)
+        if (const auto before = then.find(key); before == then.end())
+          return "'" + key + "' did not exist then";
+        else if (before->second != value)
+          return "'" + key + "' was '" + before->second + "' and is '" + value + "' now";
+      for (const auto &[key, value] : then)
+        if (now.count(key) == 0)
+          return "'" + key + "' does not exist any more";
+      return "";
+    }
+
+    std::string name_of(const int signal)
+    {
+      return signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "signal " + std::to_string(signal);
+    }
+
+    /// Times that a mesh is refined at most on the way to that of a checkpoint.
+    constexpr unsigned int largest_level_change = 30;
+    using Cell                                  = dealii::DoFHandler<dim>::active_cell_iterator;
+
+    /// The same whatever kind of triangulation holds the cell.
+    Checkpoints::Piece::CellKey key_of(const Bodies &bodies, const Bodies::Triangulation::cell_iterator &cell)
+    {
+      Checkpoints::Piece::CellKey key = cell->id().to_binary<dim>();
+      key[0]                          = bodies.coarse_cell(cell);
+      return key;
+    }
+
+    /// Whether two integration points lie on the same face.
+    bool same_face(const ContactSurfaces &surfaces, const unsigned int a, const unsigned int b)
+    {
+      return surfaces.pair(a) == surfaces.pair(b) && surfaces.point(a).face == surfaces.point(b).face;
+    }
+
+    /// Names of this rank's slave faces with integration points, and of each the first of these among the sites.
+    std::map<Checkpoints::Piece::FaceKey, unsigned int>
+    faces_with_points(const Bodies &bodies, const ContactSurfaces &surfaces, const dealii::DoFHandler<dim> &dof_handler)
+    {
+      std::map<unsigned int, std::vector<std::pair<std::set<DoFIndex>, unsigned int>>> first_point; // nodes; by cell
+      for (unsigned int s = surfaces.n_sites(); s-- > surfaces.slave_nodes().size();)
+        if (surfaces.is_owned(s) && (s == surfaces.slave_nodes().size() || !same_face(surfaces, s - 1, s)))
+        {
+          const SurfaceFace &face = surfaces.slave_faces(surfaces.pair(s))[surfaces.point(s).face];
+          std::set<DoFIndex> nodes;
+          for (const unsigned int n : face.nodes)
+            nodes.insert(surfaces.nodes()[n].dofs[0]);
+          first_point[face.cell].emplace_back(nodes, s);
+        }
+      std::map<Checkpoints::Piece::FaceKey, unsigned int> faces;
+      if (first_point.empty())
+        return faces;
+      const auto           &fe = dof_handler.get_fe();
+      std::vector<DoFIndex> dofs(fe.n_dofs_per_cell());
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (const auto found = first_point.find(cell->active_cell_index());
+            cell->is_locally_owned() && found != first_point.end())
+        {
+          cell->get_dof_indices(dofs);
+          for (const unsigned int face : cell->face_indices())
+            for (const auto &[nodes, first] : found->second)
+            {
+              unsigned int shared = 0; // most, for hanging nodes may go by another number; faces share an edge at most
+              for (unsigned int i = 0; i < dofs.size(); ++i)
+                shared += fe.system_to_component_index(i).first == 0 && fe.has_support_on_face(i, face) &&
+                          nodes.count(dofs[i]) == 1;
+              if (2 * shared > nodes.size())
+                faces[{key_of(bodies, cell), face}] = first;
+            }
+        }
+      return faces;
+    }
+
+    /// Number of integration points on the face of point @p first.
+    unsigned int n_points(const ContactSurfaces &surfaces, const unsigned int first)
+    {
+      unsigned int end = first;
+      while (end < surfaces.n_sites() && same_face(surfaces, first, end))
+        ++end;
+      return end - first;
+    }
+  } // namespace
+
+  void ContactProblem::Implementation::write_checkpoint()
+  {
+    const auto timer = profile.time(Phase::output);
+    Common     common{
+        model_of(parameters), path, committed_stiffness_scale, energies, rigid_bodies->committed(), tables->rows(), {}};
+    if (vtu)
+      common.series = vtu->series();
+
+    const std::vector<Vector> owned = nodal_state(false);
+    std::vector<Vector>       relevant_vectors(owned.size());
+    for (unsigned int n = 0; n < owned.size(); ++n)
+    {
+      relevant_vectors[n].reinit(surfaces->layout().owned[0], relevant, communicator);
+      relevant_vectors[n] = owned[n];
+    }
+
+    Checkpoints::Piece               piece;
+    std::vector<std::vector<double>> histories = solid->history();
+    unsigned int                     n_cells   = 0;
+    std::vector<DoFIndex>            dofs(fe.n_dofs_per_cell());
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+      {
+        cell->get_dof_indices(dofs);
+        std::vector<double> values;
+        for (const Vector &v : relevant_vectors)
+          for (const DoFIndex i : dofs)
+            values.push_back(v(i));
+        // only cells with slave nodes have the state of these; tangents are never zero
+        const std::size_t n_always = n_displacement_vectors * dofs.size();
+        if (std::all_of(values.begin() + n_always, values.end(), [](const double v) { return v == 0.; }))
+          values.resize(n_always);
+        piece.cells.emplace_back(key_of(bodies, cell), std::move(values));
+        if (!histories[n_cells].empty())
+          piece.histories.emplace_back(key_of(bodies, cell), std::move(histories[n_cells]));
+        ++n_cells;
+      }
+    for (const auto &[face, first] : faces_with_points(bodies, *surfaces, dof_handler))
+    {
+      std::vector<double> values;
+      for (unsigned int s = first; s < first + n_points(*surfaces, first); ++s)
+      {
+        const SiteState state = site_state(status->kept(s), committed_site_force[s], committed_site_jump[s]);
+        values.insert(values.end(), state.begin(), state.end());
+      }
+      piece.faces.emplace_back(face, std::move(values));
+    }
+    checkpoints.write(path.increment() - 1, dealii::Utilities::pack(common), piece);
+  }
+
+  void ContactProblem::Implementation::read_checkpoint()
+  {
+    const auto timer = profile.time(Phase::set_up);
+    const auto found = checkpoints.find();
+    Assert(found, dealii::ExcInternalError()); // or there is no restart
+    if (!found->remark.empty())
+      console.line("Passed over: " + found->remark);
+    const Common      common = dealii::Utilities::unpack<Common>(found->common);
+    const std::string other  = first_difference(common.model, model_of(parameters));
+    throw_on_every_rank(other.empty() ? ""
+                                      : "the checkpoint in " + parameters.output.results_folder +
+                                            " belongs to another model: " + other +
+                                            "; change it back, or begin without --restart in another Results folder",
+                        communicator);
+    path.continue_from(common.path);
+    committed_stiffness_scale = common.stiffness_scale;
+    energies                  = common.energies;
+    rigid_bodies->restore(common.rigid_bodies);
+    tables->continue_from(common.rows);
+    if (vtu)
+      vtu->continue_from(common.series);
+
+    match_mesh(found->pieces);
+    read_pieces(found->pieces);
+    paired_before = true;
+    roll_back();
+    std::ostringstream text;
+    text << "Continues after increment " << found->increment << ", t = " << path.time();
+    console.line(text.str());
+  }
+
+  /// Refines and coarsens the mesh until its cells are those of the checkpoint.
+  void ContactProblem::Implementation::match_mesh(const std::vector<std::filesystem::path> &pieces)
+  {
+    std::set<Checkpoints::Piece::CellKey> wanted;
+    for (const auto &file : pieces)
+      for (const auto &cell : Checkpoints::read(file).cells)
+        wanted.insert(cell.first);
+    bool changed = false;
+    for (unsigned int round = 0; round < largest_level_change; ++round)
+    {
+      unsigned int changes = 0;
+      for (const auto &cell : bodies.triangulation().active_cell_iterators())
+        if (cell->is_locally_owned() && wanted.count(key_of(bodies, cell)) == 0)
+        {
+          bool finer = false;
+          for (auto coarser = Bodies::Triangulation::cell_iterator(cell); coarser->level() > 0 && !finer;)
+          {
+            coarser = coarser->parent();
+            finer   = wanted.count(key_of(bodies, coarser)) == 1;
+          }
+          if (finer)
+            cell->set_coarsen_flag();
+          else
+            cell->set_refine_flag();
+          ++changes;
+        }
+      if (dealii::Utilities::MPI::max(changes, communicator) == 0)
+        break;
+      if (!bodies.refinable())
+        throw InputError("the checkpoint in " + parameters.output.results_folder +
+                         " is of a refined mesh, but this run is to refine none: keep 'Adaptivity/Interval' (more than "
+                         "there are increments, and the mesh stays as it is)");
+      bodies.refinable()->execute_coarsening_and_refinement();
+      changed = true;
+    }
+    if (!changed)
+      return;
+    set_up_mesh();
+    begin_on_mesh();
+  }
+
+  /// The committed state of this rank's cells, from whatever ranks wrote them.
+  void ContactProblem::Implementation::read_pieces(const std::vector<std::filesystem::path> &pieces)
+  {
+    std::map<Checkpoints::Piece::CellKey, std::pair<Cell, std::size_t>> cells; // and the number of owned ones before
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+      {
+        const std::size_t n         = cells.size();
+        cells[key_of(bodies, cell)] = {cell, n};
+      }
+    std::vector<std::vector<double>> histories(cells.size());
+    const auto                       faces = faces_with_points(bodies, *surfaces, dof_handler);
+
+    std::vector<Vector> vectors(n_displacement_vectors + n_node_vectors,
+                                Vector(surfaces->layout().owned[0], communicator));
+
+    std::vector<SiteState> sites(surfaces->n_sites());
+    std::vector<DoFIndex>  dofs(fe.n_dofs_per_cell());
+    std::size_t            missing = cells.size() + faces.size();
+    for (const auto &file : pieces)
+    {
+      const Checkpoints::Piece piece = Checkpoints::read(file);
+      for (const auto &[key, values] : piece.cells)
+        if (const auto cell = cells.find(key); cell != cells.end())
+        {
+          --missing;
+          cell->second.first->get_dof_indices(dofs);
+          for (unsigned int i = 0; i < values.size(); ++i)
+            if (const DoFIndex dof = dofs[i % dofs.size()]; surfaces->layout().owned[0].is_element(dof))
+              vectors[i / dofs.size()](dof) = values[i];
+        }
+      for (const auto &[key, values] : piece.histories)
+        if (const auto cell = cells.find(key); cell != cells.end())
+          histories[cell->second.second] = values;
+      for (const auto &[key, values] : piece.faces)
+        if (const auto face = faces.find(key); face != faces.end())
+        {
+          --missing;
+          for (unsigned int i = 0; i < values.size(); ++i)
+            sites[face->second + i / n_site][i % n_site] = values[i];
+        }
+    }
+    throw_on_every_rank(missing == 0 ? "" : "the checkpoint does not cover the mesh; begin without --restart",
+                        communicator);
+    solid->set_history(histories);
+
+    for (Vector &v : vectors)
+      v.compress(dealii::VectorOperation::insert);
+    set_nodal_state(vectors, false, std::move(sites));
+  }
+
+  /// Once per Newton iteration: writes a checkpoint of what converged last where a signal asks for it. @throws
+  /// Interrupted where it asks for the end.
+  void ContactProblem::Implementation::heed_signals()
+  {
+    const Signals::Request request = Signals::received(communicator);
+    if (!request.checkpoint)
+      return;
+    const bool worthwhile = path.increment() > 1;
+    if (worthwhile)
+      write_checkpoint();
+    if (request.end != 0)
+    {
+      std::ostringstream message;
+      message << "ended by " << name_of(request.end) << " in increment " << path.increment();
+      if (worthwhile)
+        message << "; --restart continues from t = " << path.time();
+      else
+        message << ": nothing had converged";
+      throw Interrupted(request.end, message.str());
+    }
+    console.remark(worthwhile ? "checkpoint written, as SIGUSR1 asked for" : "no checkpoint: nothing has converged");
+  }
+} // namespace Nodus

@@ -1,0 +1,50 @@
+#ifndef nodus_solve_block_preconditioner_h
+#define nodus_solve_block_preconditioner_h
+
+#include "solve/constrained_matrix.h"
+#include "solve/multigrid/multigrid.h"
+#include "solve/saddle_point_operator.h"
+
+#include <deal.II/lac/trilinos_vector.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace Nodus
+{
+  /// Augmented block preconditioner of a SaddlePointOperator: with D = node-diagonal blocks of C, plus 1/gamma where
+  /// the multiplier is coupled to displacements, it applies
+  ///
+  ///     u = AMG(f + B^T D^-1 g),   AMG: a cycle on K + B^T D^-1 B,
+  ///     m = D^-1 (B u - g),
+  ///
+  /// the inverse, up to AMG, of the system with D in place of C. gamma is @p augmentation_factor over the stiffness
+  /// that the multiplier sees, hence free of scale; open nodes have D = C and are solved exactly.
+  class BlockPreconditioner
+  {
+  public:
+    /// Keeps a reference to @p system. Collective.
+    BlockPreconditioner(const SaddlePointOperator &system,
+                        double                     augmentation_factor,
+                        const std::vector<Point>  &node_positions);
+
+    void vmult(BlockVector &dst, const BlockVector &src) const;
+
+  private:
+    void make_multiplier_blocks(double augmentation_factor);
+    void make_augmented_matrix();
+
+    /// D^-1 times @p m, in place.
+    void apply_multiplier_blocks(double *m) const;
+
+    const SaddlePointOperator         &system_;
+    std::vector<std::array<double, 9>> D_inverse_; ///< per owned slave node, row by row
+    std::unique_ptr<ConstrainedMatrix> augmented_;
+    std::unique_ptr<Multigrid>         multigrid_;
+    mutable Vector                     augmented_rhs_;
+    mutable std::vector<double>        multiplier_part_;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,26 @@
+#ifndef nodus_solve_block_solver_h
+#define nodus_solve_block_solver_h
+
+#include "solve/linear_solver.h"
+
+namespace Nodus
+{
+  /// GMRES on the whole system, from the left, with the augmented block preconditioner of block_preconditioner.h.
+  class BlockSolver : public LinearSolver
+  {
+  public:
+    BlockSolver(const LinearSolverParameters &parameters, const std::vector<Point> &node_positions);
+
+    using LinearSolver::solve;
+    Report solve(const LinearSystem                     &system,
+                 const std::vector<const BlockVector *> &rhs,
+                 std::vector<BlockVector>               &solutions,
+                 double                                  relative_tolerance) override;
+
+  private:
+    const LinearSolverParameters parameters_;
+    const std::vector<Point>     node_positions_;
+  };
+} // namespace Nodus
+
+#endif

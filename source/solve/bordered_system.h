@@ -1,0 +1,67 @@
+#ifndef nodus_solve_bordered_system_h
+#define nodus_solve_bordered_system_h
+
+#include "solve/linear_solver.h"
+
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <functional>
+#include <vector>
+
+namespace Nodus
+{
+  /// A LinearSystem with its border,
+  ///
+  ///     [ A  B ] [ x ]   [ a ]
+  ///     [ C  D ] [ q ] = [ b ],   q = P y + p,
+  ///
+  /// where few components y of the motions q of rigid bodies are unknown, and as many of the lower equations count. It
+  /// is solved by solving with A for a - B p and for the columns of B P, and then for y in the Schur complement: A, in
+  /// which the rigid bodies stand still, is regular where the whole is, and any LinearSolver will do.
+  class BorderedSystem
+  {
+  public:
+    /// Takes the border of @p system apart; keeps a reference to that. Collective.
+    explicit BorderedSystem(const LinearSystem &system);
+
+    /// Solves A x = rhs for several right-hand sides.
+    using Solve =
+        std::function<LinearSolver::Report(const std::vector<const BlockVector *> &rhs, std::vector<BlockVector> &x)>;
+
+    /// @param P, p of the motions; @param rows the equations that count, as many as P has columns; @param b all of
+    /// them. Collective.
+    void eliminate(const Solve                      &solve,
+                   const dealii::FullMatrix<double> &P,
+                   const dealii::Vector<double>     &p,
+                   const std::vector<unsigned int>  &rows,
+                   const dealii::Vector<double>     &b);
+
+    /// Of A.
+    const LinearSolver::Report &report() const
+    {
+      return report_;
+    }
+    /// The equations for y that are left: matrix and right-hand side.
+    const dealii::FullMatrix<double> &schur_complement() const
+    {
+      return S_;
+    }
+    const dealii::Vector<double> &rhs() const
+    {
+      return s_;
+    }
+    /// x at @p y.
+    void expand(const dealii::Vector<double> &y, BlockVector &x) const;
+
+  private:
+    const LinearSystem        &system_;
+    std::vector<BlockVector>   B_, C_; ///< columns and rows
+    dealii::FullMatrix<double> D_, S_;
+    dealii::Vector<double>     s_;
+    std::vector<BlockVector>   x_; ///< at y = 0, then minus the derivatives by each y
+    LinearSolver::Report       report_;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,57 @@
+#ifndef nodus_solve_direct_solver_h
+#define nodus_solve_direct_solver_h
+
+#include "solve/linear_solver.h"
+
+#include <memory>
+#include <vector>
+
+namespace Nodus
+{
+  /// Sparse factorisation of the whole system by MUMPS, distributed as it was assembled: of the upper triangle where
+  /// the system is symmetric (indefinite). The symbolic analysis is kept while the positions of the entries do not
+  /// change. Negative pivots are counted in symmetric systems only.
+  class DirectSolver : public LinearSolver
+  {
+  public:
+    /// The layout is only used for its communicator and size; each system brings its own.
+    explicit DirectSolver(const BlockLayout &layout);
+    ~DirectSolver() override;
+
+    using LinearSolver::solve;
+    Report solve(const LinearSystem                     &system,
+                 const std::vector<const BlockVector *> &rhs,
+                 std::vector<BlockVector>               &solutions,
+                 double                                  relative_tolerance) override;
+
+  private:
+    struct Instance;
+
+    /// Refills the triplets with the equilibrated entries, one for each place on this rank. @returns whether the
+    /// pattern differs from that of the previous call, on any rank.
+    bool collect_entries(const LinearSystem &system, const std::vector<double> &scale);
+
+    void factorise(bool pattern_changed);
+
+    /// With the factors at hand. @returns the relative residual.
+    double substitute(const BlockLayout         &layout,
+                      const std::vector<double> &scale,
+                      const BlockVector         &rhs,
+                      BlockVector               &solution);
+
+    /// @p x is the right-hand side on entry and the solution on return, on every rank.
+    void apply_inverse(std::vector<double> &x);
+
+    /// r = b - A x, all in full length on every rank.
+    std::vector<double> residual(const std::vector<double> &b, const std::vector<double> &x) const;
+
+    MPI_Comm                  communicator_;
+    int                       size_; ///< number of unknowns
+    bool                      symmetric_;
+    std::unique_ptr<Instance> instance_;
+    std::vector<int>          row_, column_; ///< of this rank's entries, starting at 1; MUMPS points here
+    std::vector<double>       value_;
+  };
+} // namespace Nodus
+
+#endif

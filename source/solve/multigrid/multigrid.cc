@@ -1,0 +1,136 @@
+#include "solve/multigrid/multigrid.h"
+#include "parallel/wait_for_all.h"
+#include "solve/multigrid/coarse_matrix.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <Epetra_MultiVector.h>
+#include <Teuchos_ParameterList.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Nodus
+{
+  namespace
+  {
+    /// Unknowns of the level that is left to ML: it solves up to 2000 directly on one rank, which takes 0.1 to 0.3 s.
+    constexpr unsigned int largest_for_library = 400;
+
+    unsigned int size(const BlockCsrMatrix &matrix)
+    {
+      return dim * matrix.map().n_global();
+    }
+  } // namespace
+
+  std::vector<double> rigid_body_modes(const BlockCsrMatrix &K, const std::vector<Point> &node_positions)
+  {
+    const MPI_Comm    comm = K.map().communicator();
+    const std::size_t n    = dim * K.map().n_owned();
+    wait_for_all(comm); // for those that have corrections at the contact
+    if (dealii::Utilities::MPI::max(dim * node_positions.size() == n ? 0 : 1, comm) != 0)
+      throw SolverFailure("Multigrid: the positions of the nodes do not match the displacements of the system.");
+
+    std::vector<double> least(2 * dim, std::numeric_limits<double>::max()); // of the coordinates and their negatives
+    for (const Point &p : node_positions)
+      for (unsigned int d = 0; d < dim; ++d)
+      {
+        least[d]       = std::min(least[d], p[d]);
+        least[dim + d] = std::min(least[dim + d], -p[d]);
+      }
+    dealii::Utilities::MPI::min(least, comm, least);
+    Vector3 centre, extent;
+    for (unsigned int d = 0; d < dim; ++d)
+    {
+      centre[d] = .5 * (least[d] - least[dim + d]);
+      extent[d] = -least[dim + d] - least[d];
+    }
+    const double length = extent.norm();
+
+    std::vector<double> modes(6 * std::max<std::size_t>(n, 1), 0.);
+    for (std::size_t i = 0; i < n; ++i)
+      if (!K.decoupled(i))
+      {
+        const Vector3      x = (node_positions[i / dim] - Point(centre)) / length;
+        const unsigned int c = i % dim;
+        modes[c * n + i]     = 1.;
+        // rotation about axis a: e_a x x
+        modes[(3 + (c + 1) % 3) * n + i] = x[(c + 2) % 3];
+        modes[(3 + (c + 2) % 3) * n + i] = -x[(c + 1) % 3];
+      }
+    return modes;
+  }
+
+  Multigrid::Multigrid(const BlockCsrMatrix    &K,
+                       const ConstrainedMatrix &A,
+                       std::vector<double>      modes,
+                       unsigned int             smoother_sweeps)
+  {
+    std::unique_ptr<BlockCsrMatrix> matrix = add_level(K, nullptr, &A, modes, smoother_sweeps);
+    smoother_sweeps *= 2; // the coarse levels cost little
+    bool stalls = false;
+    while (!stalls && size(*matrix) > largest_for_library)
+    {
+      auto                           copy     = std::make_unique<ConstrainedMatrix>(*matrix);
+      const ConstrainedMatrix *const A_coarse = copy.get();
+      auto                           next     = add_level(*matrix, std::move(copy), A_coarse, modes, smoother_sweeps);
+      stalls                                  = size(*next) > .5 * size(*matrix);
+      matrix                                  = std::move(next);
+    }
+
+    using AMG      = dealii::TrilinosWrappers::PreconditionAMG;
+    coarse_matrix_ = to_epetra(*matrix);
+    AMG::AdditionalData data;
+    data.elliptic              = true;
+    data.smoother_sweeps       = smoother_sweeps;
+    data.aggregation_threshold = 0.;
+    Teuchos::ParameterList              parameters;
+    std::unique_ptr<Epetra_MultiVector> unused;
+    data.set_parameters(parameters, unused, *coarse_matrix_);
+    modes.resize(std::max<std::size_t>(modes.size(), 1));
+    parameters.set("PDE equations", static_cast<int>(Aggregation::n_modes));
+    parameters.set("null space: type", "pre-computed");
+    parameters.set("null space: dimension", static_cast<int>(Aggregation::n_modes));
+    parameters.set("null space: vectors", modes.data());
+    parameters.set("null space: add default vectors", false);
+    ml_.initialize(*coarse_matrix_, parameters);
+  }
+
+  /// Takes the modes of the level and gives those of the next one, whose matrix it returns.
+  std::unique_ptr<BlockCsrMatrix> Multigrid::add_level(const BlockCsrMatrix              &K,
+                                                       std::unique_ptr<ConstrainedMatrix> owned,
+                                                       const ConstrainedMatrix           *A,
+                                                       std::vector<double>               &modes,
+                                                       const unsigned int                 smoother_sweeps)
+  {
+    Level level;
+    level.matrix                         = std::move(owned);
+    level.level                          = std::make_unique<MultigridLevel>(K, *A, std::move(modes), smoother_sweeps);
+    std::unique_ptr<BlockCsrMatrix> next = level.level->transfer().make_coarse_matrix(K);
+    modes                                = std::move(level.level->transfer().modes());
+    for (auto *v : {&level.coarse_residual, &level.coarse_correction})
+      v->resize(dim * next->map().n_owned());
+    levels_.push_back(std::move(level));
+    return next;
+  }
+
+  void Multigrid::vmult(Vector &dst, const Vector &src) const
+  {
+    const auto x = [&](const unsigned int l)
+    { return l == 0 ? dst.trilinos_vector()[0] : levels_[l - 1].coarse_correction.data(); };
+    const auto b = [&](const unsigned int l)
+    { return l == 0 ? src.trilinos_vector()[0] : levels_[l - 1].coarse_residual.data(); };
+    for (unsigned int l = 0; l < levels_.size(); ++l)
+      levels_[l].level->pre_smooth(x(l), b(l), levels_[l].coarse_residual.data());
+
+    const Epetra_Map        &map  = coarse_matrix_->RowMap();
+    const Level             &last = levels_.back();
+    const Epetra_MultiVector residual(View, map, last.coarse_residual.data(), map.NumMyElements(), 1);
+    Epetra_MultiVector       correction(View, map, last.coarse_correction.data(), map.NumMyElements(), 1);
+    ml_.trilinos_operator().ApplyInverse(residual, correction);
+
+    for (unsigned int l = levels_.size(); l-- > 0;)
+      levels_[l].level->post_smooth(x(l), b(l), levels_[l].coarse_correction.data());
+  }
+} // namespace Nodus

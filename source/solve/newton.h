@@ -1,0 +1,65 @@
+#ifndef nodus_solve_newton_h
+#define nodus_solve_newton_h
+
+#include <nodus/base/types.h>
+#include <nodus/parameters/parameters.h>
+
+#include <functional>
+
+namespace Nodus
+{
+  /// What Newton needs of a nonlinear problem: it sees no physics.
+  class NewtonProblem
+  {
+  public:
+    /// Relative violations at the current iterate, all to be small.
+    struct Norms
+    {
+      double force      = 0.; ///< nodal equilibrium
+      double contact    = 0.; ///< contact and friction laws
+      double prescribed = 0.; ///< prescribed displacements still to be met
+      /// Discrete choices inside the problem (statuses) that this iterate contradicted and that were changed.
+      unsigned int changes = 0;
+    };
+
+    virtual ~NewtonProblem() = default;
+    /// Residual and tangent at the current iterate. @throws SolverFailure where they do not exist.
+    virtual Norms assemble() = 0;
+    /// The correction, its linear residual reduced by @p relative_tolerance at least; returns the Krylov iterations.
+    virtual unsigned int solve(BlockVector &correction, double relative_tolerance) = 0;
+    /// iterate += factor * correction.
+    virtual void advance(double factor, const BlockVector &correction) = 0;
+  };
+
+  class Newton
+  {
+  public:
+    /// @p patience: iterations without progress after which it gives up, 0: never. Progress is a smaller residual or
+    /// fewer changes than in all iterations before; the start does not count.
+    explicit Newton(const NewtonParameters &parameters, unsigned int patience = 0);
+
+    struct Report
+    {
+      unsigned int iterations = 0, krylov_iterations = 0;
+    };
+    /// Called after each assembly: iteration, norms, Krylov iterations of the correction that led here.
+    using Log = std::function<void(unsigned int, const NewtonProblem::Norms &, unsigned int)>;
+
+    /// Solves from the current iterate; no correction when it already satisfies the tolerances without changes.
+    /// Corrections are as exact as the next iterate can use: forcing terms of Eisenstat & Walker (1996), choice 2.
+    /// A step into states that do not exist (det F <= 0) is halved, at most five times; with line search, so is one
+    /// that increases the force residual. @throws SolverFailure with the last norms.
+    Report solve(NewtonProblem &problem, const Log &log) const;
+
+    bool converged(const NewtonProblem::Norms &norms) const;
+
+  private:
+    /// Largest norm in units of its tolerance.
+    double residual(const NewtonProblem::Norms &norms) const;
+
+    NewtonParameters parameters_;
+    unsigned int     patience_;
+  };
+} // namespace Nodus
+
+#endif
