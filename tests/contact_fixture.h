@@ -31,7 +31,8 @@ struct ContactFixture
     status    = std::make_unique<Nodus::Status>(pairs,
                                              *surfaces,
                                              std::vector<double>(pairs.size(), normal_augmentation),
-                                             std::vector<double>(pairs.size(), 1.));
+                                             std::vector<double>(pairs.size(), 1.),
+                                             statuses);
     assembler = std::make_unique<Nodus::ContactAssembler>(*surfaces, pairing, jump, weights, *status);
 
     const std::vector<Nodus::Vector3> zero(surfaces->nodes().size());
@@ -84,6 +85,7 @@ struct ContactFixture
   Nodus::Pairing                            pairing;
   Nodus::JumpOperator                       jump;
   Nodus::SurfaceWeights                     weights;
+  Nodus::Status::State                      statuses;
   std::unique_ptr<Nodus::Status>            status;
   std::unique_ptr<Nodus::ContactAssembler>  assembler;
   Nodus::ContactState                       state;

@@ -76,7 +76,7 @@ namespace Nodus
         constrained.add(cells.size(), {global_nodes.end() - n_nodes, global_nodes.end()}, free_nodes);
       if (batches.empty() || batches.back().size == n_lanes || cells.back().body != cell->material_id())
       {
-        batches.push_back({static_cast<unsigned int>(cells.size()), 0, committed.size()});
+        batches.push_back({static_cast<unsigned int>(cells.size()), 0, reached.size()});
         add_initial_states(*materials[cell->material_id()]);
       }
       ++batches.back().size;
@@ -98,7 +98,7 @@ namespace Nodus
     for (auto *v : {&nodal_X, &nodal_u, &nodal_internal, &nodal_external, &nodal_rhs, &prescribed})
       v->resize(dofs.size());
     is_prescribed.resize(dofs.size());
-    current = committed;
+    start = std::make_shared<PointStates>(PointStates{reached});
     find_positions(mapping);
   }
 
@@ -123,7 +123,7 @@ namespace Nodus
     material.set_initial(initial.data());
     for (unsigned int q = 0; q < n_q; ++q)
       for (const double value : initial)
-        committed.push_back(Lanes{} + value);
+        reached.push_back(Lanes{} + value);
   }
 
   void SolidAssembler::Scratch::gather(const Batch               &batch,
@@ -372,7 +372,7 @@ namespace Nodus
                                 material(batch),
                                 batch_u.data(),
                                 goes_on ? batch_u_before.data() : nullptr,
-                                {committed.data() + batch.state, current.data() + batch.state},
+                                {start->values.data() + batch.state, reached.data() + batch.state},
                                 batch_force.data(),
                                 tangent ? batch_stiffness.data() : nullptr,
                                 det_F);

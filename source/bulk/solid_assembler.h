@@ -17,8 +17,8 @@
 namespace Nodus
 {
   /// Internal and external forces of the bodies and their tangent, total Lagrangian, full integration
-  /// ((degree+1)^3 Gauss points), on the reference configuration. Holds the state of laws with history at these points:
-  /// committed, and where the last displacement leads to from there.
+  /// ((degree+1)^3 Gauss points), on the reference configuration. Holds the states of laws with history at these points:
+  /// those that the increment starts from, and where the last displacement leads to from there.
   class SolidAssembler
   {
   public:
@@ -38,7 +38,7 @@ namespace Nodus
 
     /// As forces(), and in the same sweep the tangent K_t = d(internal - external)/du with prescribed displacements
     /// eliminated (a positive diagonal on their rows), and @p rhs = -(internal - external) - K_t b likewise, b the
-    /// inhomogeneities of @p constraints. From the second call after commit() or roll_back() on, that of bodies with
+    /// inhomogeneities of @p constraints. From the second call after start_from() on, that of bodies with
     /// mean dilatation is that of Newton's method with pressures (ElementKernel), equal in the limit. @p tangent has
     /// the sparsity of make_sparsity() and is overwritten.
     void tangent(const Vector                            &u,
@@ -53,18 +53,23 @@ namespace Nodus
     /// alone.
     void make_sparsity(BlockCsrMatrix &tangent) const;
 
-    /// The state that the last call of forces() or tangent() led to is that of equilibrium.
-    void commit();
-    /// Forgets it.
-    void roll_back();
+    /// States at all points of the mesh at hand, as a value that can be kept.
+    struct PointStates;
+    using History = std::shared_ptr<const PointStates>;
+    /// Those that the increment starts from, and those that the last call of forces() or tangent() led to.
+    History start() const;
+    History reached() const;
+    /// The increment starts from @p history from here on; what the last displacement led to is forgotten.
+    void start_from(const History &history);
 
-    /// Committed states of the locally owned active cells, in the order of the triangulation: [quadrature
-    /// point][number], empty for hyperelastic laws.
+    /// start() of the locally owned active cells, in the order of the triangulation: [quadrature point][number], empty
+    /// for hyperelastic laws.
     std::vector<std::vector<double>> history() const;
-    /// Sets what history() gave. Collective. @throws InputError on every rank when the sizes are not those of the laws.
+    /// Starts from what history() gave. Collective. @throws InputError on every rank when the sizes are not those of
+    /// the laws.
     void set_history(const std::vector<std::vector<double>> &history);
 
-    /// At a quadrature point of the committed state.
+    /// At a quadrature point of start().
     struct PointResult
     {
       dealii::SymmetricTensor<2, dim> cauchy_stress;
@@ -72,8 +77,7 @@ namespace Nodus
       double                          stored_energy, dissipation; ///< per reference volume
       double                          JxW;                        ///< reference volume
     };
-    /// Visits the locally owned cells with what is at their points at displacement @p u (with ghosts) of the committed
-    /// state; the stress is that of the law at the deformation gradient that it sees.
+    /// Visits the locally owned cells with what is at their points at displacement @p u (with ghosts) of start(); the stress is that of the law at the deformation gradient that it sees.
     void visit(const Vector                                                      &u,
                const std::function<void(const dealii::DoFHandler<dim>::active_cell_iterator &cell,
                                         const std::vector<PointResult>                      &points)> &visitor) const;

@@ -10,6 +10,11 @@
 
 namespace Nodus
 {
+  struct SolidAssembler::PointStates
+  {
+    std::vector<Lanes> values; ///< [batch][point][number]
+  };
+
   /// Every rank integrates all cells around its nodes, those of its neighbours too: nothing has to be sent, but for
   /// cells with hanging nodes.
   struct SolidAssembler::Scratch
@@ -54,7 +59,8 @@ namespace Nodus
       }
     };
     std::vector<Batch>                    batches;
-    std::vector<Lanes>                    committed, current; ///< states: [batch][point][number]
+    History                               start;   ///< states that the increment starts from
+    std::vector<Lanes>                    reached; ///< those of the last displacement: [batch][point][number]
     ConstrainedCells                      constrained;
     std::shared_ptr<const NodeMap>        nodes;      ///< of these cells, then of other ranks' constrained cells
     std::vector<unsigned int>             cell_nodes; ///< [cell][node], local numbers

@@ -16,21 +16,23 @@ namespace Nodus
                        [](const auto &material) { return material->n_state() > 0; });
   }
 
-  void SolidAssembler::commit()
+  SolidAssembler::History SolidAssembler::start() const
   {
-    scratch_->forget_iterates();
-    if (!has_history())
-      return;
-    scratch_->committed = scratch_->current;
-    scratch_->forget_last();
+    return scratch_->start;
   }
 
-  void SolidAssembler::roll_back()
+  SolidAssembler::History SolidAssembler::reached() const
+  {
+    return std::make_shared<PointStates>(PointStates{scratch_->reached});
+  }
+
+  void SolidAssembler::start_from(const History &history)
   {
     scratch_->forget_iterates();
     if (!has_history())
       return;
-    scratch_->current = scratch_->committed;
+    scratch_->start   = history;
+    scratch_->reached = history->values;
     scratch_->forget_last();
   }
 
@@ -44,7 +46,7 @@ namespace Nodus
         {
           history.emplace_back(s.n_q * s.material(batch).n_state());
           for (std::size_t i = 0; i < history.back().size(); ++i)
-            history.back()[i] = s.committed[batch.state + i][v];
+            history.back()[i] = s.start->values[batch.state + i][v];
         }
     return history;
   }
@@ -80,14 +82,15 @@ namespace Nodus
           of_ghosts[c] = values;
           of_cell[c]   = &of_ghosts[c];
         });
+    PointStates states{s.start->values};
     for (const auto &batch : s.batches)
       for (unsigned int v = 0; v < n_lanes; ++v)
       {
         const auto &values = *of_cell[batch.cell(v)];
         for (std::size_t i = 0; i < values.size(); ++i)
-          s.committed[batch.state + i][v] = values[i];
+          states.values[batch.state + i][v] = values[i];
       }
-    roll_back();
+    start_from(std::make_shared<PointStates>(std::move(states)));
   }
 
   double SolidAssembler::spring_energy(const Vector &u) const
@@ -137,7 +140,7 @@ namespace Nodus
             for (unsigned int J = 0; J < dim; ++J)
               F_point[i][J] = F[q].F[i][J][v];
           for (unsigned int i = 0; i < state.size(); ++i)
-            state[i] = s.committed[batch.state + q * state.size() + i][v];
+            state[i] = s.start->values[batch.state + q * state.size() + i][v];
           points[q] = {material.cauchy_stress(F_point, state.data()),
                        material.equivalent_plastic_strain(state.data()),
                        material.stored_energy(F_point, state.data()),

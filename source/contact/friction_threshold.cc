@@ -80,15 +80,16 @@ namespace Nodus
     for (unsigned int k = 0; k < rate.size() && problem.str().empty(); ++k)
       if (surfaces_.is_owned(k))
       {
-        const Point X       = surfaces_.site_position(k);
-        friction_factor_[k] = limits_[surfaces_.pair(k)].factor(X, rate[k]);
-        if (!(friction_factor_[k] >= 0. && std::isfinite(friction_factor_[k])))
+        const Point X      = surfaces_.site_position(k);
+        double     &factor = now_.friction_factor[k];
+        factor             = limits_[surfaces_.pair(k)].factor(X, rate[k]);
+        if (!(factor >= 0. && std::isfinite(factor)))
           problem << "'Friction factor = " << pairs_[surfaces_.pair(k)].friction_factor << "' of "
-                  << pair_label(pairs_, surfaces_.pair(k)) << " is " << friction_factor_[k] << " at (" << X
-                  << ") for the slip rate " << rate[k] << "; it must be >= 0 everywhere";
+                  << pair_label(pairs_, surfaces_.pair(k)) << " is " << factor << " at (" << X << ") for the slip rate "
+                  << rate[k] << "; it must be >= 0 everywhere";
       }
     throw_on_every_rank(problem.str(), surfaces_.layout().communicator);
-    surfaces_.site_exchange().update(friction_factor_);
+    surfaces_.site_exchange().update(now_.friction_factor);
   }
 
   void Status::update_floor()

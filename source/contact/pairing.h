@@ -44,14 +44,6 @@ namespace Nodus
       partnered_ = std::move(partnered);
     }
 
-    /// Sites of which only the tangents are known, from a checkpoint.
-    void set_tangents(const std::vector<std::array<Vector3, 2>> &tangents)
-    {
-      sites_.assign(tangents.size(), SitePairing());
-      for (unsigned int s = 0; s < tangents.size(); ++s)
-        sites_[s].tangent = tangents[s];
-    }
-
     const SitePairing &operator[](const unsigned int site) const
     {
       return sites_[site];

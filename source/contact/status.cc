@@ -27,12 +27,13 @@ namespace Nodus
   Status::Status(const std::vector<ContactPairParameters> &pairs,
                  const ContactSurfaces                    &surfaces,
                  const std::vector<double>                &normal_augmentation,
-                 const std::vector<double>                &stiffness)
+                 const std::vector<double>                &stiffness,
+                 State                                    &now)
       : pairs_(pairs)
       , surfaces_(surfaces)
       , normal_augmentation_(normal_augmentation)
+      , now_(now)
       , threshold_slope_(surfaces.n_sites(), 0.)
-      , friction_factor_(surfaces.n_sites(), 1.)
       , threshold_floor_(pairs.size(), 0.)
       , ledger_(surfaces.n_sites())
   {
@@ -44,7 +45,7 @@ namespace Nodus
     now_.threshold.assign(n, 0.);
     now_.slip.assign(n, {{0., 0.}});
     now_.adjustment.assign(n, 0.);
-    committed_ = now_;
+    now_.friction_factor.assign(n, 1.);
   }
 
   void Status::initialize(const Pairing &pairing, const std::vector<double> &distance)
@@ -70,7 +71,6 @@ namespace Nodus
     }
     surfaces_.site_exchange().update(now_.contact);
     surfaces_.site_exchange().update(now_.adjustment);
-    committed_ = now_;
   }
 
   void Status::assign(const unsigned int site, const bool contact, const bool stick, const double threshold)
@@ -359,48 +359,11 @@ namespace Nodus
     return result;
   }
 
-  void Status::commit(const std::vector<std::array<double, 2>> &slip)
+  void Status::add_slip(const std::vector<std::array<double, 2>> &slip)
   {
     for (unsigned int k = 0; k < slip.size(); ++k)
       if (now_.contact[k])
         for (unsigned int i = 0; i < 2; ++i)
           now_.slip[k][i] += slip[k][i];
-    committed_ = now_;
-  }
-
-  void Status::set_state(const State &state)
-  {
-    now_ = state;
-    update_floor();
-  }
-
-  void Status::roll_back()
-  {
-    set_state(committed_);
-  }
-
-  Status::Record Status::kept(const unsigned int site) const
-  {
-    const State &c = committed_;
-    return {{double(c.contact[site]),
-             double(c.stick[site]),
-             c.threshold[site],
-             c.slip[site][0],
-             c.slip[site][1],
-             c.adjustment[site]}};
-  }
-
-  void Status::restore(std::vector<Record> records)
-  {
-    surfaces_.site_exchange().update(records);
-    for (unsigned int k = 0; k < records.size(); ++k)
-    {
-      committed_.contact[k]    = records[k][0] > 0.5; // or between those of others, on a new mesh
-      committed_.stick[k]      = records[k][1] > 0.5;
-      committed_.threshold[k]  = records[k][2];
-      committed_.slip[k]       = {{records[k][3], records[k][4]}};
-      committed_.adjustment[k] = records[k][5];
-    }
-    roll_back();
   }
 } // namespace Nodus

@@ -48,11 +48,23 @@ namespace Nodus
   class Status
   {
   public:
-    /// @p normal_augmentation and @p stiffness of each pair [pressure/length, pressure].
+    /// What history is made of, of all local sites.
+    struct State
+    {
+      std::vector<char>                  contact, stick;  ///< S, S_f
+      std::vector<double>                threshold;       ///< mu lambda_s <= 0 [pressure]
+      std::vector<std::array<double, 2>> slip;            ///< accumulated, in the tangent frame [length]
+      std::vector<double>                adjustment;      ///< of d_n at the first pairing [length]
+      std::vector<double>                friction_factor; ///< of the last slip rate
+    };
+
+    /// @p normal_augmentation and @p stiffness of each pair [pressure/length, pressure]. @p now outlives it, and is
+    /// what it reads and moves; it is set to that of open sites.
     Status(const std::vector<ContactPairParameters> &pairs,
            const ContactSurfaces                    &surfaces,
            const std::vector<double>                &normal_augmentation,
-           const std::vector<double>                &stiffness);
+           const std::vector<double>                &stiffness,
+           State                                    &now);
 
     /// Number of local contact sites.
     unsigned int size() const
@@ -78,7 +90,7 @@ namespace Nodus
     {
       return now_.contact[site] && -now_.threshold[site] > threshold_floor_[surfaces_.pair(site)];
     }
-    /// An integration point that holds its laws in the mean.
+    /// An integration point whose laws are regularised.
     bool projected(const unsigned int site) const
     {
       return regularised_ && can_project(surfaces_.pair(site));
@@ -93,7 +105,7 @@ namespace Nodus
     {
       return hold_ && pairs_[surfaces_.pair(site)].contact_law != ContactPairParameters::ContactLaw::tied;
     }
-    /// Pairs whose consistent weights are lumped for now, to hold their laws in the mean.
+    /// Pairs whose consistent weights are lumped for now, because their laws are regularised.
     std::vector<bool> lumped() const;
     ContactStatus     status(const unsigned int site) const
     {
@@ -182,7 +194,7 @@ namespace Nodus
       unsigned int              period         = 0;     ///< > 0: this status vector was visited that many passes ago
       bool                      cycles         = false; ///< merged loop: visited again too often
       unsigned int              frozen         = 0;     ///< sites that keep their status from here on, on all ranks
-      bool                      to_regularised = false; ///< from here on laws hold in the mean where that is possible
+      bool                      to_regularised = false; ///< from here on laws are regularised where that is possible
       std::vector<unsigned int> sites;                  ///< of this rank that changed
     };
     /// Tests every site and changes those that contradict their status (eq. 2, 3, 7, 8); begin_loop() comes first. Once
@@ -191,8 +203,8 @@ namespace Nodus
     /// may cycle. Where one comes back even so (friction), no vector may satisfy all sites: those that take part in the
     /// cycle, and in later ones, are frozen with the status that they contradict least; the others change all at once
     /// again. A merged loop has no such rules and cycles when vectors come back time and again.
-    /// Before all that, sites that share multipliers, whose conditions need not have a common solution, hold their laws
-    /// in the mean for the rest of the attempt: see regularise(). Collective.
+    /// Before all that, sites that share multipliers, whose conditions need not have a common solution, get
+    /// regularised laws for the rest of the attempt: see regularise(). Collective.
     /// @p closing_only: sites that penetrate close, nothing else changes (an iterate whose pressures mean nothing yet).
     Update update(const StatusInput &input, bool closing_only = false);
 
@@ -216,20 +228,11 @@ namespace Nodus
     };
     Violation frozen_violation(const StatusInput &input) const;
 
-    /// S, S_f, thresholds, accumulated slips and adjustments of all local sites.
-    struct State
+    /// The state that it refers to has been set to another one: what follows from it is found anew. Collective.
+    void resume()
     {
-      std::vector<char>                  contact, stick;
-      std::vector<double>                threshold;
-      std::vector<std::array<double, 2>> slip;
-      std::vector<double>                adjustment;
-    };
-    /// The state at hand, and back to one of the same increment. Collective.
-    const State &state() const
-    {
-      return now_;
+      update_floor();
     }
-    void set_state(const State &state);
 
     /// Empties the ledger, at the start of an increment.
     void                begin_increment();
@@ -242,16 +245,8 @@ namespace Nodus
       return now_.slip[site];
     }
 
-    /// The increment converged: adds its slip (right at owned sites) and keeps the state; or goes back to the last kept
-    /// one. Collective.
-    void commit(const std::vector<std::array<double, 2>> &slip);
-    void roll_back();
-
-    /// What commit() kept of a site as numbers: S, S_f, mu lambda_s, the accumulated slip and the adjustment.
-    using Record = std::array<double, 6>;
-    Record kept(unsigned int site) const;
-    /// Goes back to a state that was kept() once; one record per site, right at owned ones. Collective.
-    void restore(std::vector<Record> records);
+    /// Adds the slip of the increment at closed sites, right at owned ones.
+    void add_slip(const std::vector<std::array<double, 2>> &slip);
 
   private:
     bool has(bool (FrictionLimit::*property)() const) const
@@ -265,7 +260,7 @@ namespace Nodus
     }
     double factor(const unsigned int site) const
     {
-      return friction_fraction_ * friction_factor_[site];
+      return friction_fraction_ * now_.friction_factor[site];
     }
     bool              can_project(unsigned int pair) const;
     bool              can_lump(unsigned int pair) const;
@@ -283,9 +278,9 @@ namespace Nodus
     const ContactSurfaces                    &surfaces_;
     std::vector<double>                       normal_augmentation_;
     std::vector<FrictionLimit>                limits_; ///< of the pairs
-    State                                     now_, committed_;
-    std::vector<double>                       threshold_slope_, friction_factor_; ///< of the sites
-    std::vector<double>                       threshold_floor_;                   ///< of the pairs
+    State                                    &now_;
+    std::vector<double>                       threshold_slope_; ///< of the sites
+    std::vector<double>                       threshold_floor_; ///< of the pairs
     double                                    resolved_ = 0., friction_fraction_ = 1.;
     std::vector<StatusLedger>                 ledger_;
     std::vector<std::vector<char>>            visited_;

@@ -26,6 +26,18 @@ namespace Nodus
     return p;
   }
 
+  std::string coordinates(const Point &X)
+  {
+    std::ostringstream text;
+    text << "(" << without_round_off(X, 1e-6 * X.norm()) << ")";
+    return text.str();
+  }
+
+  std::string in_brackets(const std::string &name)
+  {
+    return name.empty() ? "" : " (" + name + ")";
+  }
+
   std::string Side::text() const
   {
     const double       size = lower.distance(upper) + lower.norm() + upper.norm();

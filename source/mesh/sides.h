@@ -27,6 +27,9 @@ namespace Nodus
 
   /// Components that are small beside @p size are round-off: zero.
   Point without_round_off(Point p, double size);
+  /// "(x y z)", and " (name)" or nothing without a name, for messages.
+  std::string coordinates(const Point &X);
+  std::string in_brackets(const std::string &name);
 
   /// By body and boundary id. Collective.
   std::vector<std::map<dealii::types::boundary_id, Side>>

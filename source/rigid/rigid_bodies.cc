@@ -24,7 +24,8 @@ namespace Nodus
     }
   } // namespace
 
-  RigidBodies::RigidBodies(const std::vector<BodyParameters> &parameters, const Bodies &bodies)
+  RigidBodies::RigidBodies(const std::vector<BodyParameters> &parameters, const Bodies &bodies, std::vector<State> &now)
+      : now_(now)
   {
     for (unsigned int b = 0; b < parameters.size(); ++b)
     {
@@ -51,6 +52,7 @@ namespace Nodus
       body.loads = std::move(loads);
       bodies_.push_back(std::move(body));
     }
+    now_.assign(bodies_.size(), State());
   }
 
   std::string RigidBodies::label(const Body &body) const
@@ -83,8 +85,9 @@ namespace Nodus
 
   void RigidBodies::set_time(const double t)
   {
-    for (Body &body : bodies_)
+    for (unsigned int i = 0; i < bodies_.size(); ++i)
     {
+      Body &body = bodies_[i];
       for (unsigned int c = 0; c < n_components; ++c)
       {
         body.load[c] = body.free[c] ? body.loads->value(dealii::Point<1>(t), c) : 0.;
@@ -97,28 +100,28 @@ namespace Nodus
         }
       }
       body.prescribed_rotation    = body.motion->rotation(t);
-      body.prescribed.translation = body.motion->translation(t);
-      body.prescribed.rotation    = body.prescribed_rotation - body.committed.prescribed_rotation;
+      body.prescribed_translation = body.motion->translation(t);
     }
   }
 
   RigidBodies::Components RigidBodies::missing(const unsigned int i) const
   {
-    const Body &body = bodies_[i];
-    Components  missing{};
+    const Body   &body = bodies_[i];
+    const Vector3 turn = body.prescribed_rotation - now_[i].prescribed_rotation;
+    Components    missing{};
     for (unsigned int c = 0; c < dim; ++c)
     {
       if (!body.free[c])
-        missing[c] = body.prescribed.translation[c] - body.now.translation[c];
+        missing[c] = body.prescribed_translation[c] - now_[i].translation[c];
       if (!body.free[dim + c])
-        missing[dim + c] = body.prescribed.rotation[c] - body.now.rotation[c];
+        missing[dim + c] = turn[c] - now_[i].turn[c];
     }
     return missing;
   }
 
   dealii::Tensor<2, dim> RigidBodies::spin(const unsigned int i) const
   {
-    const Vector3         &theta = bodies_[i].now.rotation;
+    const Vector3         &theta = now_[i].turn;
     const double           angle = theta.norm();
     dealii::Tensor<2, dim> cross;
     for (unsigned int c = 0; c < dim; ++c)
@@ -143,10 +146,10 @@ namespace Nodus
     {
       for (unsigned int c = 0; c < dim; ++c)
       {
-        bodies_[i].now.translation[c] += factor * correction[n_components * i + c];
-        bodies_[i].now.rotation[c] += factor * correction[n_components * i + dim + c];
+        now_[i].translation[c] += factor * correction[n_components * i + c];
+        now_[i].turn[c] += factor * correction[n_components * i + dim + c];
       }
-      if (!(bodies_[i].now.rotation.norm() < dealii::numbers::PI))
+      if (!(now_[i].turn.norm() < dealii::numbers::PI))
         throw SolverFailure(label(bodies_[i]) + " turns by more than half a turn in one increment",
                             SolverFailure::Kind::free_body);
     }
@@ -154,13 +157,14 @@ namespace Nodus
 
   void RigidBodies::move(Vector &u) const
   {
-    for (const Body &body : bodies_)
+    for (unsigned int i = 0; i < bodies_.size(); ++i)
     {
-      const dealii::Tensor<2, dim> R = rotation_by(body.now.rotation) * body.committed.rotation;
+      const Body                  &body = bodies_[i];
+      const dealii::Tensor<2, dim> R    = rotation_by(now_[i].turn) * now_[i].rotation;
       for (const Node &node : body.nodes)
       {
         const Vector3 r     = node.X - body.centre;
-        const Vector3 moved = body.now.translation + (R * r - r);
+        const Vector3 moved = now_[i].translation + (R * r - r);
         for (unsigned int c = 0; c < dim; ++c)
           u(node.dof + c) = moved[c];
       }
@@ -169,70 +173,31 @@ namespace Nodus
       u.compress(dealii::VectorOperation::insert);
   }
 
-  std::vector<RigidBodies::Unknowns> RigidBodies::unknowns() const
-  {
-    std::vector<Unknowns> all;
-    for (const Body &body : bodies_)
-      all.push_back(body.now);
-    return all;
-  }
-
-  void RigidBodies::set_unknowns(const std::vector<Unknowns> &unknowns)
+  void RigidBodies::end_increment(const std::vector<Components> &applied)
   {
     for (unsigned int i = 0; i < bodies_.size(); ++i)
-      bodies_[i].now = unknowns[i];
+      now_[i] = {now_[i].translation,
+                 Vector3(),
+                 rotation_by(now_[i].turn) * now_[i].rotation,
+                 bodies_[i].prescribed_rotation,
+                 applied[i]};
   }
 
-  void RigidBodies::commit(const std::vector<Components> &applied)
-  {
-    for (unsigned int i = 0; i < bodies_.size(); ++i)
-    {
-      Body &body        = bodies_[i];
-      body.committed    = {body.now.translation,
-                           rotation_by(body.now.rotation) * body.committed.rotation,
-                           body.prescribed_rotation,
-                           applied[i]};
-      body.now.rotation = Vector3();
-    }
-  }
-
-  void RigidBodies::roll_back()
-  {
-    for (Body &body : bodies_)
-      body.now = {body.committed.translation, Vector3()};
-  }
-
-  std::vector<RigidBodies::State> RigidBodies::committed() const
-  {
-    std::vector<State> states;
-    for (const Body &body : bodies_)
-      states.push_back(body.committed);
-    return states;
-  }
-
-  void RigidBodies::restore(const std::vector<State> &states)
-  {
-    for (unsigned int i = 0; i < bodies_.size(); ++i)
-      bodies_[i].committed = states.at(i);
-    roll_back();
-  }
-
-  double RigidBodies::work(const std::vector<Components> &applied) const
+  double RigidBodies::work(const std::vector<State> &before, const std::vector<Components> &applied) const
   {
     double work = 0.;
     for (unsigned int i = 0; i < bodies_.size(); ++i)
     {
-      const Body   &body  = bodies_[i];
-      const Vector3 moved = body.now.translation - body.committed.translation;
-      work += 0.5 * (part(body.committed.applied, 0) + part(applied[i], 0)) * moved +
-              0.5 * (part(body.committed.applied, dim) + part(applied[i], dim)) * body.now.rotation;
+      const Vector3 moved = now_[i].translation - before[i].translation;
+      work += 0.5 * (part(before[i].applied, 0) + part(applied[i], 0)) * moved +
+              0.5 * (part(before[i].applied, dim) + part(applied[i], dim)) * now_[i].turn;
     }
     return work;
   }
 
   Vector3 RigidBodies::rotation(const unsigned int i) const
   {
-    const dealii::Tensor<2, dim> R = rotation_by(bodies_[i].now.rotation) * bodies_[i].committed.rotation;
+    const dealii::Tensor<2, dim> R = rotation_by(now_[i].turn) * now_[i].rotation;
     Eigen::Matrix3d              matrix;
     for (unsigned int r = 0; r < dim; ++r)
       for (unsigned int c = 0; c < dim; ++c)

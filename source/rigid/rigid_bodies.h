@@ -28,8 +28,27 @@ namespace Nodus
     static constexpr unsigned int n_components = 2 * dim;
     using Components                           = std::array<double, n_components>;
 
-    /// At rest. @throws InputError on every rank where an expression does not parse.
-    RigidBodies(const std::vector<BodyParameters> &parameters, const Bodies &bodies);
+    /// Motion of a body: what is left of the past, and the unknowns of the increment.
+    struct State
+    {
+      Vector3                translation; ///< of the centre, now
+      Vector3                turn;        ///< theta, rotation vector since the increment began
+      dealii::Tensor<2, dim> rotation = dealii::unit_symmetric_tensor<dim>(); ///< R_begin
+      Vector3                prescribed_rotation; ///< rotation vector of the prescribed motion as the increment begins
+      Components             applied{}; ///< forces and moments then, also those that hold prescribed components
+
+      template <typename Archive>
+      void serialize(Archive &archive, const unsigned int)
+      {
+        archive &translation &turn &rotation &prescribed_rotation;
+        for (double &value : applied)
+          archive &value;
+      }
+    };
+
+    /// @p now, one for each driven body, outlives the object, and is what it moves; it is set to that at rest.
+    /// @throws InputError on every rank where an expression does not parse.
+    RigidBodies(const std::vector<BodyParameters> &parameters, const Bodies &bodies, std::vector<State> &now);
 
     unsigned int size() const
     {
@@ -79,7 +98,7 @@ namespace Nodus
     /// Where the centre is now.
     Point centre(const unsigned int i) const
     {
-      return Point(bodies_[i].centre + bodies_[i].now.translation);
+      return Point(bodies_[i].centre + now_[i].translation);
     }
     /// What the unknowns still lack of the prescribed values, zero at free components.
     Components missing(unsigned int i) const;
@@ -92,43 +111,16 @@ namespace Nodus
     /// Sets the displacements of the nodes, owned ones. Collective.
     void move(Vector &u) const;
 
-    /// Unknowns of the increment.
-    struct Unknowns
-    {
-      Vector3 translation, rotation;
-    };
-    std::vector<Unknowns> unknowns() const;
-    void                  set_unknowns(const std::vector<Unknowns> &unknowns);
+    /// The increment ends here with the forces and moments @p applied to each body: the next one begins.
+    void end_increment(const std::vector<Components> &applied);
 
-    /// What is left of the past.
-    struct State
-    {
-      Vector3                translation;
-      dealii::Tensor<2, dim> rotation = dealii::unit_symmetric_tensor<dim>();
-      Vector3                prescribed_rotation; ///< rotation vector of the prescribed motion so far
-      Components             applied{};           ///< forces and moments, also those that hold prescribed components
-
-      template <typename Archive>
-      void serialize(Archive &archive, const unsigned int)
-      {
-        archive &translation &rotation &prescribed_rotation;
-        for (double &value : applied)
-          archive &value;
-      }
-    };
-    /// Keeps the motion, and that @p applied acts on each body at its end.
-    void               commit(const std::vector<Components> &applied);
-    void               roll_back();
-    std::vector<State> committed() const;
-    /// Takes back what committed() gave.
-    void restore(const std::vector<State> &states);
-
-    /// Work of the mean of the committed and the @p applied forces and moments in the increment [energy].
-    double work(const std::vector<Components> &applied) const;
+    /// Work of the mean of the forces and moments at both ends of the increment in it [energy]: @p before, and
+    /// @p applied at its end, which has not been ended yet.
+    double work(const std::vector<State> &before, const std::vector<Components> &applied) const;
     /// Of the centre from the start.
     const Vector3 &translation(const unsigned int i) const
     {
-      return bodies_[i].now.translation;
+      return now_[i].translation;
     }
     /// Rotation vector from the start, no longer than half a turn [radians].
     Vector3 rotation(unsigned int i) const;
@@ -145,12 +137,11 @@ namespace Nodus
       std::unique_ptr<const dealii::FunctionParser<1>> loads;
       std::vector<Node>                                nodes;
       Components                                       load{};
-      Unknowns                                         prescribed, now; ///< prescribed: at the time set
-      State                                            committed;
-      Vector3                                          prescribed_rotation; ///< at the time set
+      Vector3                                          prescribed_translation, prescribed_rotation; ///< at the time set
     };
-    std::string       label(const Body &body) const;
-    std::vector<Body> bodies_;
+    std::string         label(const Body &body) const;
+    std::vector<Body>   bodies_;
+    std::vector<State> &now_;
   };
 } // namespace Nodus
 

@@ -1,4 +1,4 @@
-#include "run/contact_problem_implementation.h"
+#include "run/energy_audit.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -39,123 +39,138 @@ namespace Nodus
     return *this;
   }
 
-  /// Loads, released reactions and reactions: all forces on the bodies but those of contact.
-  Vector ContactProblem::Implementation::applied_forces() const
+  EnergyAudit::EnergyAudit(const Model &model, Journal &journal, States &states, const Equilibrium &equilibrium)
+      : model_(model)
+      , journal_(journal)
+      , states_(states)
+      , equilibrium_(equilibrium)
   {
-    const auto &constraints = boundary_conditions->homogeneous_constraints();
-    Vector      forces(external);
-    forces -= drag;
-    for (const DoFIndex i : surfaces->layout().owned[0])
-      if (constraints.is_constrained(i))
-        forces(i) = internal(i) + contact_force(i);
-    for (unsigned int b = 0; b < rigid_bodies->size(); ++b) // what drives these counts as force and moment
-      for (const RigidBodies::Node &node : rigid_bodies->nodes(b))
-        for (unsigned int c = 0; c < dim; ++c)
-          forces(node.dof + c) = external(node.dof + c) - drag(node.dof + c);
-    forces.compress(dealii::VectorOperation::insert);
-    return forces;
   }
 
-  /// Takes account of the increment that has just converged, the states of its materials included; the displacement and
-  /// the forces that it started from are still the committed ones.
-  void ContactProblem::Implementation::audit_energies()
+  void EnergyAudit::account()
   {
-    const Energies before = energies;
+    const Increment   &increment = equilibrium_.increment();
+    const NodalForces &forces    = equilibrium_.forces();
+    State             &now       = states_.now;
+    const State       &start     = states_.committed;
 
     // What the bodies take in.
-    const Vector applied = applied_forces();
-    const double rest = release_fraction(time), rest_before = release_fraction(path.time());
-    const auto  &constraints = boundary_conditions->homogeneous_constraints();
-    double       sums[7]     = {0., 0., 0., 0., 0., 0., 0.}; // in the order of the members of Energies
-    for (const DoFIndex i : surfaces->layout().owned[0])
+    const Vector applied     = equilibrium_.applied_forces();
+    const double rest        = increment.left_to_release(increment.end),
+                 rest_before = increment.left_to_release(increment.begin);
+    const auto &constraints  = model_.boundary_conditions->homogeneous_constraints();
+    Energies    of_increment;
+    double      stored = 0., plastic = 0.;
+    for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
     {
-      const double moved   = solution.block(0)(i) - committed.block(0)(i);
-      const double release = constraints.is_constrained(i) ? 0. : 0.5 * (rest_before + rest) * reaction(i) * moved;
-      sums[0] += 0.5 * (committed_applied(i) + applied(i)) * moved - release;
-      sums[1] += release;
-      sums[6] -= drag(i) * moved; // constant in the increment
+      const double moved   = now.unknowns.block(0)(i) - start.unknowns.block(0)(i);
+      const double release = constraints.is_constrained(i) ? 0. : 0.5 * (rest_before + rest) * now.reaction(i) * moved;
+      of_increment.external += 0.5 * (start.applied(i) + applied(i)) * moved - release;
+      of_increment.released += release;
+      of_increment.stabilisation -= forces.drag(i) * moved; // constant in the increment
     }
-
-    // What contact does. The residual is minus the force on the slave.
-    std::vector<unsigned int> creating;
-    const double              negligible = negligible_dissipation();
-    for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
-    {
-      if (!surfaces->is_owned(s) || !surfaces->has_status(s))
-        continue;
-      const Vector3               force       = -residual.jump[s];
-      const std::array<double, 2> slip        = contact->slip(state, s);
-      const Vector3              &n           = pairing[s].normal;
-      double                      dissipation = 0.;
-      for (unsigned int i = 0; i < 2 && !status->holds_friction(s); ++i)
-        dissipation -= force * pairing[s].tangent[i] * slip[i];
-      sums[0] += 0.5 * (committed_site_force[s] + force) * jump.rigid(s).moved;
-      sums[2] += 0.5 * ((committed_site_force[s] + force) * n) * (n * jump.jump_of_increment(s, state.increment));
-      sums[4] += dissipation;
-      if (dissipation < -negligible)
-        creating.push_back(s);
-      committed_site_force[s] = force;
-    }
+    const ContactWork work = contact_work();
+    of_increment.external += work.masters;
+    of_increment.contact  = work.normal;
+    of_increment.friction = work.friction;
 
     // What is stored and dissipated.
-    relevant_u = solution.block(0);
-    solid->visit(relevant_u,
-                 [&](const auto &, const std::vector<SolidAssembler::PointResult> &points)
-                 {
-                   for (const auto &point : points)
-                   {
-                     sums[3] += point.stored_energy * point.JxW;
-                     sums[5] += point.dissipation * point.JxW;
-                   }
-                 });
-    sums[3] += solid->spring_energy(relevant_u);
+    const Vector u = model_.with_ghosts(now.unknowns.block(0));
+    model_.solid->visit(u,
+                        [&](const auto &, const std::vector<SolidAssembler::PointResult> &points)
+                        {
+                          for (const auto &point : points)
+                          {
+                            stored += point.stored_energy * point.JxW;
+                            plastic += point.dissipation * point.JxW;
+                          }
+                        });
+    stored += model_.solid->spring_energy(u);
+    if (dealii::Utilities::MPI::this_mpi_process(model_.communicator) == 0)
+      of_increment.external += model_.rigid_bodies.work(start.rigid, equilibrium_.driven().applied());
 
-    if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
-      sums[0] += rigid_bodies->work(rigid_applied);
+    for (double *sum : {&of_increment.external,
+                        &of_increment.released,
+                        &of_increment.stabilisation,
+                        &of_increment.contact,
+                        &of_increment.friction,
+                        &stored,
+                        &plastic})
+      *sum = dealii::Utilities::MPI::sum(*sum, model_.communicator);
+    of_increment.stored  = stored - now.energies.stored;
+    of_increment.plastic = plastic - now.energies.plastic;
 
-    for (double &sum : sums)
-      sum = dealii::Utilities::MPI::sum(sum, communicator);
-    energies.external += sums[0];
-    energies.released += sums[1];
-    energies.contact += sums[2];
-    energies.stored = sums[3];
-    energies.friction += sums[4];
-    energies.plastic = sums[5];
-    energies.stabilisation += sums[6];
-    committed_applied = applied;
+    now.energies.external += of_increment.external;
+    now.energies.released += of_increment.released;
+    now.energies.contact += of_increment.contact;
+    now.energies.stored = stored;
+    now.energies.friction += of_increment.friction;
+    now.energies.plastic = plastic;
+    now.energies.stabilisation += of_increment.stabilisation;
+    now.applied = applied;
+    if (!increment.on_new_mesh()) // which stores another energy
+      warn(of_increment, work.creating);
+  }
 
-    if (time == path.time()) // equilibrium on a new mesh, which stores another energy
-      return;
-    Energies increment = energies;
-    increment -= before;
-    warn_of_energies(increment, creating);
+  EnergyAudit::ContactWork EnergyAudit::contact_work() const
+  {
+    const ContactInterface     &contact    = *model_.contact;
+    const ContactSurfaces      &surfaces   = contact.surfaces();
+    const std::vector<Vector3> &before     = states_.committed.contact.force;
+    const double                negligible = negligible_dissipation();
+    ContactWork                 work;
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+    {
+      if (!surfaces.is_owned(s) || !surfaces.has_status(s))
+        continue;
+      const Vector3               force       = -contact.residual().jump[s]; // on the slave
+      const std::array<double, 2> slip        = contact.slip(s);
+      const Vector3              &n           = contact.pairing()[s].normal;
+      double                      dissipation = 0.;
+      for (unsigned int i = 0; i < 2 && !contact.status().holds_friction(s); ++i)
+        dissipation -= force * contact.pairing()[s].tangent[i] * slip[i];
+      work.masters += 0.5 * (before[s] + force) * contact.jump().rigid(s).moved;
+      work.normal +=
+          0.5 * ((before[s] + force) * n) * (n * contact.jump().jump_of_increment(s, contact.state().increment));
+      work.friction += dissipation;
+      if (dissipation < -negligible)
+        work.creating.push_back(s);
+    }
+    return work;
   }
 
   /// Of a site: what the tolerances of Newton's method on slips leave at the largest force.
-  double ContactProblem::Implementation::negligible_dissipation() const
+  double EnergyAudit::negligible_dissipation() const
   {
-    double force = 0., motion = length_scale;
-    for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
-      if (surfaces->is_owned(s))
-        force = std::max(force, residual.jump[s].norm());
-    for (const Vector3 &moved : state.increment)
+    const ContactInterface &contact  = *model_.contact;
+    const ContactSurfaces  &surfaces = contact.surfaces();
+    double                  force = 0., motion = model_.length_scale;
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+      if (surfaces.is_owned(s))
+        force = std::max(force, contact.residual().jump[s].norm());
+    for (const Vector3 &moved : contact.state().increment)
       motion = std::max(motion, moved.norm());
-    return beyond_tolerance * parameters.newton.contact_tolerance * dealii::Utilities::MPI::max(force, communicator) *
-           dealii::Utilities::MPI::max(motion, communicator);
+    return beyond_tolerance * model_.parameters.newton.contact_tolerance *
+           dealii::Utilities::MPI::max(force, model_.communicator) *
+           dealii::Utilities::MPI::max(motion, model_.communicator);
   }
 
   /// @param creating sites of this rank where friction created energy. Collective.
-  void ContactProblem::Implementation::warn_of_energies(const Energies                  &increment,
-                                                        const std::vector<unsigned int> &creating)
+  void EnergyAudit::warn(const Energies &increment, const std::vector<unsigned int> &creating) const
   {
-    const unsigned int n_creating = dealii::Utilities::MPI::sum<unsigned int>(creating.size(), communicator);
+    const ContactInterface &contact  = *model_.contact;
+    const Energies         &energies = states_.now.energies;
+    const unsigned int n_creating    = dealii::Utilities::MPI::sum<unsigned int>(creating.size(), model_.communicator);
     if (n_creating > 0)
-      console.remark("warning: friction creates energy at " + std::to_string(n_creating) + " sites, first " +
-                     site_loci(creating, 1).front() +
-                     ": its force does not oppose the slip there; see energy.csv, and try smaller increments");
-    const double imbalance  = std::abs(increment.imbalance());
-    const double motion     = std::max(largest_difference(solution.block(0), committed.block(0)), length_scale);
-    const double negligible = beyond_tolerance * parameters.newton.force_tolerance * force_scale * motion;
+      journal_.console.remark("warning: friction creates energy at " + std::to_string(n_creating) + " sites, first " +
+                              contact.loci(creating, 1).front() +
+                              ": its force does not oppose the slip there; see energy.csv, and try smaller increments");
+    const double imbalance = std::abs(increment.imbalance());
+    const double motion =
+        std::max(contact.largest_difference(states_.now.unknowns.block(0), states_.committed.unknowns.block(0)),
+                 model_.length_scale);
+    const double negligible =
+        beyond_tolerance * model_.parameters.newton.force_tolerance * equilibrium_.forces().scale * motion;
     if (imbalance > large_imbalance * increment.throughput() && imbalance > small_part * energies.throughput() &&
         imbalance > negligible)
     {
@@ -175,7 +190,7 @@ namespace Nodus
             << ": contact, slip or yielding set in within it, where work with the mean force is not exact; the state "
                "at its end is in equilibrium all the same, and if energies matter, half the increment leaves a half to "
                "a quarter of it ('Load stepping/Increments')";
-      console.remark(text.str());
+      journal_.console.remark(text.str());
     }
   }
 } // namespace Nodus

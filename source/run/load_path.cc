@@ -1,8 +1,9 @@
-#include "run/contact_problem_implementation.h"
+#include "run/load_path.h"
+#include "mesh/sides.h"
+#include "run/free_motions.h"
 
 #include <deal.II/base/mpi.h>
 
-#include <algorithm>
 #include <iomanip>
 #include <sstream>
 
@@ -12,153 +13,235 @@ namespace Nodus
   {
     /// Forces of viscous stabilisation beyond this part of the largest nodal force are warned of.
     constexpr double large_drag = 0.01;
+    /// Of the contact force: the log says nothing of smaller friction.
+    constexpr double negligible_friction = 1e-3;
   } // namespace
 
-  /// Increment after increment; one that fails is tried again in halves, from exactly the state before.
-  void ContactProblem::Implementation::follow_load_path()
+  LoadPath::LoadPath(const RunParts &parts)
+      : parts_(parts)
+      , audit_(parts.model, parts.journal, parts.states, parts.equilibrium)
+      , first_(parts.path.increment())
+      , never_closed_(parts.model.contact->surfaces().n_pairs(), true)
   {
-    const unsigned int first = path.increment();
-    std::vector<bool>  never_closed(surfaces->n_pairs(), true);
-    console.begin_at(path.progress());
+  }
+
+  void LoadPath::follow(const std::function<void(unsigned int, double)> &callback)
+  {
+    LoadStepping      &path       = parts_.path;
+    const auto        &adaptivity = parts_.model.parameters.adaptivity;
+    const unsigned int interval   = parts_.model.parameters.output.checkpoint_interval;
+    parts_.journal.console.begin_at(path.progress());
     while (!path.finished())
     {
-      console.begin_increment(path.increment(), path.time(), path.target());
-      diagnosis.begin_increment(path.increment(), path.time(), path.target());
-      impose(path.target());
+      if (!solve())
+        continue;
+      if (mesh_repetitions_ < adaptivity.repetitions && parts_.adaptation.adapt())
+      {
+        ++mesh_repetitions_;
+        parts_.journal.console.remark("the increment is repeated on the new mesh");
+        continue;
+      }
+      mesh_repetitions_            = 0;
+      const unsigned int increment = path.increment();
+      finish(callback);
+      if (adaptivity.interval > 0 && increment % adaptivity.interval == 0 && !path.finished() &&
+          parts_.adaptation.adapt())
+        restore_equilibrium();
+      if (interval > 0 && increment % interval == 0)
+        parts_.checkpointing.write(path);
+    }
+    warn_of_open_pairs();
+  }
+
+  /// The increment at hand. @returns false where it has failed, and been halved. @throws SolverFailure where it cannot
+  /// be.
+  bool LoadPath::solve()
+  {
+    LoadStepping   &path      = parts_.path;
+    Journal        &journal   = parts_.journal;
+    const Increment increment = path.at_hand();
+    journal.console.begin_increment(increment.number, increment.begin, increment.end);
+    journal.diagnosis.begin_increment(increment.number, increment.begin, increment.end);
+    parts_.equilibrium.begin_increment(increment);
+    try
+    {
+      parts_.strategy.solve_increment();
+      check_stabilised_motion(parts_.model, parts_.states);
+      return true;
+    }
+    catch (const SolverFailure &failure)
+    {
+      const IterationCounts &pass = journal.pass;
+      std::ostringstream     reason;
+      reason << "geometry pass " << pass.geometry << ", threshold pass " << pass.threshold << ", status pass "
+             << pass.status << ": " << failure.what();
+      journal.diagnosis.end_attempt(failure.what());
+      const bool  may_shrink = !parts_.strategy.begins_singular();
+      const bool  again      = may_shrink && path.cut_back();
+      std::string hint;
+      if (!again)
+        hint = report_failure(
+            {parts_.model, parts_.journal, parts_.states, parts_.equilibrium, parts_.results}, failure, may_shrink);
+      parts_.model.roll_back(parts_.states);
+      if (!again)
+        give_up(reason.str(), hint, may_shrink);
+      journal.console.remark(reason.str() + "; the increment is halved");
+      return false;
+    }
+  }
+
+  /// The increment at hand has converged.
+  void LoadPath::finish(const std::function<void(unsigned int, double)> &callback)
+  {
+    LoadStepping   &path      = parts_.path;
+    Journal        &journal   = parts_.journal;
+    const Increment increment = path.at_hand();
+    warn_of_lost_partners();
+    report_stabilisation();
+    commit();
+    path.accept(journal.counts.newton, journal.counts.fallbacks == 0);
+    {
+      const auto timer = journal.profile.time(Phase::output);
+      parts_.results.update();
+      parts_.results.write(increment, path.finished());
+    }
+    const std::vector<ContactResultants> &resultants = parts_.results.resultants();
+    for (unsigned int p = 0; p < never_closed_.size(); ++p)
+      never_closed_[p] = never_closed_[p] && resultants[p].slip + resultants[p].stick == 0;
+    journal.console.end_increment(journal.counts, resultants, path.progress());
+    if (callback)
+      callback(increment.number, increment.end);
+  }
+
+  /// The state at hand becomes the one that the next increment starts from, which is also what a checkpoint holds.
+  void LoadPath::commit()
+  {
+    State &now   = parts_.states.now;
+    Model &model = parts_.model;
+    now.history  = model.solid->reached();
+    model.solid->start_from(now.history);
+    audit_.account();
+    model.contact->end_increment();
+    model.rigid_bodies.end_increment(parts_.equilibrium.driven().applied());
+    if (parts_.equilibrium.increment().ends_interval)
+      now.reaction = parts_.equilibrium.reactions();
+    parts_.states.committed = now;
+  }
+
+  /// The state on a new mesh goes on from equilibrium at the time that has been reached.
+  void LoadPath::restore_equilibrium()
+  {
+    Model     &model  = parts_.model;
+    State     &start  = parts_.states.committed;
+    Status    &status = model.contact->status();
+    const auto before = parts_.results.resultants();
+    parts_.equilibrium.begin_increment(parts_.path.standstill());
+    for (const bool hold : {true, false})
       try
       {
-        solve_increment();
-        check_stabilised_motion();
+        status.hold_friction(hold);
+        parts_.strategy.solve_increment();
+        break;
       }
       catch (const SolverFailure &failure)
       {
-        std::ostringstream reason;
-        reason << "geometry pass " << pass.geometry << ", threshold pass " << pass.threshold << ", status pass "
-               << pass.status << ": " << failure.what();
-        diagnosis.end_attempt(failure.what());
-        const bool        may_shrink = !begins_singular();
-        const bool        again      = may_shrink && path.cut_back();
-        const std::string hint       = again ? "" : diagnose(failure, may_shrink);
-        roll_back();
-        if (!again)
-          give_up(reason.str(), hint, path.increment() > first, may_shrink);
-        console.remark(reason.str() + "; the increment is halved");
-        continue;
+        parts_.journal.diagnosis.end_attempt(failure.what());
+        model.roll_back(parts_.states);
+        parts_.journal.console.remark(std::string("no equilibrium on the new mesh: ") + failure.what() +
+                                      (!hold ? "; the next increment goes on from the state as it was taken over"
+                                             : "; again with slip that may turn"));
+        if (!hold)
+          return;
       }
-      if (mesh_repetitions < parameters.adaptivity.repetitions)
-      {
-        if (adapt_mesh())
-        {
-          ++mesh_repetitions;
-          console.remark("the increment is repeated on the new mesh");
-          continue;
-        }
-      }
-      mesh_repetitions = 0;
-      warn_of_lost_partners();
-      report_stabilisation();
-      commit();
-      const unsigned int increment = path.increment();
-      path.accept(counts.newton, counts.fallbacks == 0);
-      {
-        const auto timer = profile.time(Phase::output);
-        update_results();
-        write(increment, path.finished());
-      }
-      for (unsigned int p = 0; p < never_closed.size(); ++p)
-        never_closed[p] = never_closed[p] && resultants[p].slip + resultants[p].stick == 0;
-      console.end_increment(counts, resultants, path.progress());
-      if (callback)
-        callback(increment, time);
-      const unsigned int every = parameters.adaptivity.interval;
-      if (every > 0 && increment % every == 0 && !path.finished() && adapt_mesh())
-        restore_equilibrium();
-      const unsigned int interval = parameters.output.checkpoint_interval;
-      if (interval > 0 && increment % interval == 0)
-        write_checkpoint();
+    // the forces that were taken over belong to the mesh before: they do no work
+    start.applied = parts_.equilibrium.applied_forces();
+    for (unsigned int s = 0; s < start.contact.force.size(); ++s)
+      start.contact.force[s] = -model.contact->residual().jump[s];
+    commit();
+    status.hold_friction(false);
+    parts_.results.update();
+    say_what_changed(before);
+  }
+
+  void LoadPath::say_what_changed(const std::vector<ContactResultants> &before) const
+  {
+    const auto change = [](const Vector3 &force, const Vector3 &force_before)
+    { return force_before.norm() > 0. ? 100. * (force - force_before).norm() / force_before.norm() : 0.; };
+    const auto &now = parts_.results.resultants();
+    for (unsigned int p = 0; p < now.size(); ++p)
+    {
+      std::ostringstream text;
+      text.precision(3);
+      text << "new mesh: the contact force of " << now[p].name << " changes by "
+           << change(now[p].slave_force, before[p].slave_force) << " %";
+      if (before[p].friction.norm() > negligible_friction * before[p].slave_force.norm())
+        text << ", friction by " << change(now[p].friction, before[p].friction) << " %";
+      parts_.journal.console.remark(text.str());
     }
-    for (unsigned int p = 0; p < never_closed.size(); ++p)
-      if (never_closed[p] && first == 1)
-        console.remark("contact pair " + std::to_string(p + 1) + in_brackets(parameters.contact_pairs[p].name) +
-                       " was open at the end of every increment; --validate tells its gaps");
   }
 
   /// Closed sites that end the increment without a master point slid off the master surface, or went through it: that
   /// satisfies the equations.
-  void ContactProblem::Implementation::warn_of_lost_partners()
+  void LoadPath::warn_of_lost_partners() const
   {
+    const ContactInterface   &contact  = *parts_.model.contact;
+    const ContactSurfaces    &surfaces = contact.surfaces();
+    const auto               &closed   = parts_.states.committed.contact.statuses.contact;
     unsigned int              n_closed = 0;
     std::vector<unsigned int> lost;
-    for (unsigned int s = 0; s < surfaces->n_sites(); ++s)
-      if (surfaces->is_owned(s) && surfaces->has_status(s) && status->kept(s).front() != 0.)
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+      if (surfaces.is_owned(s) && surfaces.has_status(s) && closed[s])
       {
         ++n_closed;
-        if (!pairing[s].found)
+        if (!contact.pairing()[s].found)
           lost.push_back(s);
       }
-    const unsigned int n_lost = dealii::Utilities::MPI::sum(static_cast<unsigned int>(lost.size()), communicator);
-    n_closed                  = dealii::Utilities::MPI::sum(n_closed, communicator);
+    const MPI_Comm     communicator = parts_.model.communicator;
+    const unsigned int n_lost       = dealii::Utilities::MPI::sum(static_cast<unsigned int>(lost.size()), communicator);
+    n_closed                        = dealii::Utilities::MPI::sum(n_closed, communicator);
     if (n_lost > 0)
-      console.remark("warning: " + std::to_string(n_lost) + " of " + std::to_string(n_closed) +
-                     " closed sites have no master point any more, first " + site_loci(lost, 1).front() +
-                     ": they slid off the master surface, or went through it in too large an increment");
+      parts_.journal.console.remark("warning: " + std::to_string(n_lost) + " of " + std::to_string(n_closed) +
+                                    " closed sites have no master point any more, first " +
+                                    contact.loci(lost, 1).front() +
+                                    ": they slid off the master surface, or went through it in too large an increment");
   }
 
-  /// What is left at time @p t, in the interval at hand, of the reactions that are released in it.
-  double ContactProblem::Implementation::release_fraction(const double t) const
+  void LoadPath::warn_of_open_pairs() const
   {
-    return (path.interval_end() - t) / (path.interval_end() - path.interval_begin());
+    for (unsigned int p = 0; p < never_closed_.size(); ++p)
+      if (never_closed_[p] && first_ == 1)
+        parts_.journal.console.remark("contact pair " + std::to_string(p + 1) +
+                                      in_brackets(parts_.model.parameters.contact_pairs[p].name) +
+                                      " was open at the end of every increment; --validate tells its gaps");
   }
 
   /// Says how much of the balance of the increment is due to viscous stabilisation.
-  void ContactProblem::Implementation::report_stabilisation()
+  void LoadPath::report_stabilisation() const
   {
-    if (!stabilisation->acts())
+    if (!parts_.model.stabilisation->acts())
       return;
-    const double       part = drag.linfty_norm() / force_scale;
+    const NodalForces &forces = parts_.equilibrium.forces();
+    const double       drag   = forces.drag.linfty_norm();
+    const double       part   = drag / forces.scale;
     std::ostringstream text;
     text << std::setprecision(2) << "viscous stabilisation carries " << 100. * part << " % of the largest nodal force ("
-         << drag.linfty_norm() << " of " << force_scale << ')';
+         << drag << " of " << forces.scale << ')';
     if (part > large_drag)
-      text << ": dashpots hold this state in part; they are gone at t = " << path.interval_end()
+      text << ": dashpots hold this state in part; they are gone at t = " << parts_.equilibrium.increment().interval_end
            << ", and if states before that matter, give more increments or a smaller 'Viscous stabilisation'";
-    console.remark(text.str());
+    parts_.journal.console.remark(text.str());
   }
 
-  /// Sets the boundary conditions of time @p t. Where a displacement was prescribed until the interval began, the force
-  /// that held it goes to zero in the course of the interval.
-  void ContactProblem::Implementation::impose(const double t)
+  /// The state is the last one that converged. @p hint: where to read more. @p may_shrink: smaller increments might
+  /// have come further.
+  void LoadPath::give_up(const std::string &reason, const std::string &hint, const bool may_shrink)
   {
-    time = t;
-    if (boundary_conditions->set_time(t))
-      surfaces->set_fixed(boundary_conditions->homogeneous_constraints());
-    surfaces->move_rigid_masters(path.time(), t);
-    rigid_bodies->set_time(t);
-    const auto  &constraints = boundary_conditions->homogeneous_constraints();
-    const double interval_1  = parameters.load_stepping.interval_ends.front();
-    stabilisation->set_increment(path.time(), t, path.interval_begin(), path.interval_end());
-    drag            = 0.;
-    motions_unknown = path.time() == path.interval_begin() && surfaces->n_pairs() > 0;
-    status->set_resolved_interference(std::min(1., t / interval_1));
-    const double rest = release_fraction(t);
-    for (const DoFIndex i : surfaces->layout().owned[0])
-      released(i) = constraints.is_constrained(i) ? 0. : rest * reaction(i);
-    released.compress(dealii::VectorOperation::insert);
-  }
-
-  /// The state is the last one that converged, in this run if @p converged_before. @p hint: where to read more.
-  /// @p may_shrink: smaller increments might have come further.
-  void ContactProblem::Implementation::give_up(const std::string &reason,
-                                               const std::string &hint,
-                                               const bool         converged_before,
-                                               const bool         may_shrink)
-  {
-    tables->add_failure();
-    if (vtu && converged_before)
+    const LoadStepping &path = parts_.path;
+    parts_.journal.tables->add_failure();
+    if (path.increment() > first_)
     {
-      const auto timer = profile.time(Phase::output);
-      relevant_u       = committed.block(0);
-      vtu->write(path.increment() - 1, path.time(), relevant_u, fields);
+      const auto timer = parts_.journal.profile.time(Phase::output);
+      parts_.results.write_state(path.increment() - 1, path.time());
     }
     std::ostringstream message;
     message << "increment " << path.increment() << " (t = " << path.target() << "), " << reason
@@ -166,7 +249,7 @@ namespace Nodus
             << (path.increment() > 1 ? "" : " (no increment converged)");
     if (!may_shrink)
       message << ". Smaller increments begin with the same system, so the increment was not cut back";
-    else if (!parameters.load_stepping.cut_back)
+    else if (!parts_.model.parameters.load_stepping.cut_back)
       message << ". Give more Increments, or set 'Load stepping/Cut back = true'";
     else
       message << ". The increment was cut back to " << path.target() - path.time()

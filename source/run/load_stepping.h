@@ -7,6 +7,34 @@
 
 namespace Nodus
 {
+  /// A step on the load path: what is solved for, and where its interval begins and ends.
+  struct Increment
+  {
+    unsigned int number = 0; ///< from 1
+    double       begin = 0., end = 0.;
+    double       interval_begin = 0., interval_end = 0.;
+    bool         ends_interval = false;
+
+    double duration() const
+    {
+      return end - begin;
+    }
+    /// Equilibrium is found where the last increment ended, on another mesh.
+    bool on_new_mesh() const
+    {
+      return begin == end;
+    }
+    bool begins_interval() const
+    {
+      return begin == interval_begin;
+    }
+    /// What is left at time @p t of the reactions that are released in the interval.
+    double left_to_release(const double t) const
+    {
+      return (interval_end - t) / (interval_end - interval_begin);
+    }
+  };
+
   /// Where a run is on its load path: time, increments and retries, no physics.
   ///
   /// An interval is divided into the increments that the user asks for. One that fails is halved, and after an easy one
@@ -49,6 +77,15 @@ namespace Nodus
     bool ends_interval() const
     {
       return end_position() == n_ticks_;
+    }
+    /// The one to solve next, and the standstill at the time that has been reached.
+    Increment at_hand() const
+    {
+      return {increment_, time(), target(), interval_begin(), interval_end(), ends_interval()};
+    }
+    Increment standstill() const
+    {
+      return {increment_, time(), time(), interval_begin(), interval_end(), time() == interval_begin()};
     }
     /// Part of the whole path that is done, 0 to 1.
     double progress() const

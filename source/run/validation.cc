@@ -1,5 +1,7 @@
+#include "run/validation.h"
 #include "mesh/sides.h"
-#include "run/contact_problem_implementation.h"
+#include "run/free_motions.h"
+#include "solve/linear_solver.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -11,8 +13,6 @@
 #include <set>
 #include <sstream>
 #include <tuple>
-
-// What --validate says about a case: bodies, what each condition takes hold of, gaps, loops, load path.
 
 namespace Nodus
 {
@@ -177,156 +177,188 @@ namespace Nodus
       double       smallest = std::numeric_limits<double>::max(), largest = -std::numeric_limits<double>::max();
       double       smallest_at_nodes = smallest, largest_at_nodes = largest; ///< of averaged jumps: of the nodes alone
     };
-  } // namespace
 
-  void ContactProblem::validate()
-  {
-    auto       &p            = *implementation_;
-    const auto &parameters   = p.parameters;
-    const auto  communicator = p.communicator;
-    p.summary();
-
-    std::vector<unsigned int> cells(p.bodies.size());
-    for (const auto &cell : p.dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        ++cells[cell->material_id()];
-    dealii::Utilities::MPI::sum(cells, communicator, cells);
-    const auto sides = sides_of(p.bodies, p.dof_handler, *p.mapping);
-    for (unsigned int b = 0; b < p.bodies.size(); ++b)
+    /// The bodies and the sides that conditions can be set on. Collective.
+    void describe_bodies(const Model &model, Console &console)
     {
-      const auto        &material = parameters.bodies[b].material;
-      const auto         ends     = p.bodies.bounding_box(b).get_boundary_points();
-      const Vector3      size     = ends.second - ends.first;
-      std::ostringstream text;
-      text << "  body " << b + 1 << " (" << p.bodies.name(b) << "): ";
-      if (p.bodies.has_mesh(b))
-        text << counted(cells[b], "cell") << ", " << size[0] << " x " << size[1] << " x " << size[2] << " from "
-             << coordinates(without_round_off(ends.first, size.norm())) << " to "
-             << coordinates(without_round_off(ends.second, size.norm())) << ", boundary ids "
-             << joined(p.bodies.boundary_ids(b), ", ") << "; ";
-      else
-        text << "no mesh; ";
-      if (parameters.bodies[b].rigid)
+      std::vector<unsigned int> cells(model.bodies.size());
+      for (const auto &cell : model.dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          ++cells[cell->material_id()];
+      dealii::Utilities::MPI::sum(cells, model.communicator, cells);
+      const auto sides = sides_of(model.bodies, model.dof_handler, *model.mapping);
+      for (unsigned int b = 0; b < model.bodies.size(); ++b)
       {
-        text << "rigid";
-        for (const unsigned int c : parameters.bodies[b].rigid_free)
-          text << (c == parameters.bodies[b].rigid_free.front() ? ", free to " : ", ")
-               << (c < dim ? "move along " : "turn about ") << "xyz"[c % dim];
+        const BodyParameters &body     = model.parameters.bodies[b];
+        const auto           &material = body.material;
+        const auto            ends     = model.bodies.bounding_box(b).get_boundary_points();
+        const Vector3         size     = ends.second - ends.first;
+        std::ostringstream    text;
+        text << "  body " << b + 1 << " (" << model.bodies.name(b) << "): ";
+        if (model.bodies.has_mesh(b))
+          text << counted(cells[b], "cell") << ", " << size[0] << " x " << size[1] << " x " << size[2] << " from "
+               << coordinates(without_round_off(ends.first, size.norm())) << " to "
+               << coordinates(without_round_off(ends.second, size.norm())) << ", boundary ids "
+               << joined(model.bodies.boundary_ids(b), ", ") << "; ";
+        else
+          text << "no mesh; ";
+        if (body.rigid)
+        {
+          text << "rigid";
+          for (const unsigned int c : body.rigid_free)
+            text << (c == body.rigid_free.front() ? ", free to " : ", ") << (c < dim ? "move along " : "turn about ")
+                 << "xyz"[c % dim];
+        }
+        else
+          text << text_of(material.law) << ", E = " << material.youngs_modulus << ", nu = " << material.poissons_ratio;
+        console.line(text.str());
+        for (const auto &[id, side] : sides[b])
+          console.line("    boundary id " + std::to_string(id) + ": " + side.text());
       }
-      else
-        text << text_of(material.law) << ", E = " << material.youngs_modulus << ", nu = " << material.poissons_ratio;
-      p.console.line(text.str());
-      for (const auto &[id, side] : sides[b])
-        p.console.line("    boundary id " + std::to_string(id) + ": " + side.text());
     }
 
-    for (unsigned int n = 0; n < parameters.boundary_conditions.size(); ++n)
+    /// What each boundary condition takes hold of. Collective.
+    void describe_conditions(const Model &model, Console &console)
     {
-      const auto &condition = parameters.boundary_conditions[n];
-      p.console.line("  boundary condition " + std::to_string(n + 1) + in_brackets(condition.name) + ": " +
-                     describe(condition, extent_of(condition, p.bodies, p.dof_handler, *p.mapping)));
+      for (unsigned int n = 0; n < model.parameters.boundary_conditions.size(); ++n)
+      {
+        const auto &condition = model.parameters.boundary_conditions[n];
+        console.line("  boundary condition " + std::to_string(n + 1) + in_brackets(condition.name) + ": " +
+                     describe(condition, extent_of(condition, model.bodies, model.dof_handler, *model.mapping)));
+      }
     }
 
-    p.pair_surfaces();
-    for (unsigned int pair = 0; pair < p.surfaces->n_pairs(); ++pair)
+    /// Gaps of a pair after the first pairing, on all ranks; @p lost: own sites without a master point. Collective.
+    Gaps gaps_of(const Model &model, const unsigned int pair, std::vector<unsigned int> &lost)
     {
-      Gaps                      gaps;
-      std::vector<unsigned int> lost;
-      for (unsigned int k = 0; k < p.pairing.size(); ++k)
-        if (p.surfaces->pair(k) == pair && p.surfaces->has_status(k) && p.surfaces->is_owned(k))
+      const ContactInterface &contact  = *model.contact;
+      const ContactSurfaces  &surfaces = contact.surfaces();
+      const Pairing          &pairing  = contact.pairing();
+      const Status           &status   = contact.status();
+      const bool averages = model.parameters.contact_pairs[pair].scheme == ContactPairParameters::Scheme::averaged;
+      Gaps       gaps;
+      for (unsigned int k = 0; k < pairing.size(); ++k)
+        if (surfaces.pair(k) == pair && surfaces.has_status(k) && surfaces.is_owned(k))
         {
           ++gaps.sites;
-          gaps.closed += p.status->contact(k);
-          if (!p.pairing[k].found)
+          gaps.closed += status.contact(k);
+          if (!pairing[k].found)
           {
             lost.push_back(k);
             continue;
           }
           ++gaps.found;
-          const double distance = p.contact->distance(p.state, k) + p.status->adjustment(k);
-          gaps.adjusted += p.status->adjustment(k) != 0.;
-          const double gap = std::abs(distance) < round_off * p.surfaces->face_size(pair) ? 0. : -distance;
+          const double distance = contact.distance(k) + status.adjustment(k);
+          gaps.adjusted += status.adjustment(k) != 0.;
+          const double gap = std::abs(distance) < round_off * surfaces.face_size(pair) ? 0. : -distance;
           gaps.smallest    = std::min(gaps.smallest, gap);
           gaps.largest     = std::max(gaps.largest, gap);
-          if (const Projection &master = p.pairing[k].master;
-              parameters.contact_pairs[pair].scheme == ContactPairParameters::Scheme::averaged && master.found())
+          if (const Projection &master = pairing[k].master; averages && master.found())
           {
-            const double at_node =
-                p.pairing[k].normal * (p.geometry->master[pair].at(master.face, master.xi, master.eta).x -
-                                       p.geometry->position(*p.surfaces, k)) -
-                p.status->adjustment(k);
+            const ContactGeometry &geometry = *contact.geometry();
+            const double at_node = pairing[k].normal * (geometry.master[pair].at(master.face, master.xi, master.eta).x -
+                                                        geometry.position(surfaces, k)) -
+                                   status.adjustment(k);
             gaps.smallest_at_nodes = std::min(gaps.smallest_at_nodes, at_node);
             gaps.largest_at_nodes  = std::max(gaps.largest_at_nodes, at_node);
           }
         }
       for (unsigned int *count : {&gaps.sites, &gaps.found, &gaps.closed, &gaps.adjusted})
-        *count = dealii::Utilities::MPI::sum(*count, communicator);
+        *count = dealii::Utilities::MPI::sum(*count, model.communicator);
       for (double *value : {&gaps.smallest, &gaps.smallest_at_nodes})
-        *value = dealii::Utilities::MPI::min(*value, communicator);
+        *value = dealii::Utilities::MPI::min(*value, model.communicator);
       for (double *value : {&gaps.largest, &gaps.largest_at_nodes})
-        *value = dealii::Utilities::MPI::max(*value, communicator);
+        *value = dealii::Utilities::MPI::max(*value, model.communicator);
+      return gaps;
+    }
 
-      const std::string  name = "  contact pair " + std::to_string(pair + 1);
-      std::ostringstream text;
+    /// What the averaged scheme makes of gaps between curved surfaces.
+    void describe_bulge(Gaps gaps, const double size, Console &console)
+    {
+      if (gaps.smallest_at_nodes > gaps.largest_at_nodes ||
+          std::max(std::abs(gaps.smallest - gaps.smallest_at_nodes), std::abs(gaps.largest - gaps.largest_at_nodes)) <=
+              seen_bulge * size)
+        return;
+      std::ostringstream bulge;
+      for (double *value : {&gaps.smallest_at_nodes, &gaps.largest_at_nodes})
+        *value = std::abs(*value) < round_off * size ? 0. : *value;
+      bulge << "    of the nodes themselves " << gaps.smallest_at_nodes << " to " << gaps.largest_at_nodes
+            << "; contact acts on means around them, which touching faces of length h and relative radius R lower by "
+               "h^2/(12 R) in each direction";
+      console.line(bulge.str());
+    }
+
+    void describe_pair(const Model &model, const unsigned int pair, Console &console)
+    {
+      const ContactSurfaces       &surfaces   = model.contact->surfaces();
+      const ContactPairParameters &parameters = model.parameters.contact_pairs[pair];
+      std::vector<unsigned int>    lost;
+      const Gaps                   gaps = gaps_of(model, pair, lost);
+      const std::string            name = "  contact pair " + std::to_string(pair + 1);
+      std::ostringstream           text;
       text << name << ": " << gaps.found << " of " << gaps.sites
-           << (p.surfaces->has_points(pair) ? " integration points" : " slave nodes") << " find a master point";
-      const double size = p.surfaces->face_size(pair);
+           << (surfaces.has_points(pair) ? " integration points" : " slave nodes") << " find a master point";
       if (gaps.found > 0)
         text << ", gap " << gaps.smallest << " to " << gaps.largest << ", " << gaps.closed << " start closed";
       else
         text << "; are the boundary ids right, and is 'Search distance' large enough?";
       if (gaps.adjusted > 0)
         text << ", " << gaps.adjusted << " adjusted";
-      p.console.line(name + ": " + describe(parameters.contact_pairs[pair]));
-      p.console.line(text.str());
-      if (gaps.smallest_at_nodes <= gaps.largest_at_nodes &&
-          std::max(std::abs(gaps.smallest - gaps.smallest_at_nodes), std::abs(gaps.largest - gaps.largest_at_nodes)) >
-              seen_bulge * size)
-      {
-        std::ostringstream bulge;
-        for (double *value : {&gaps.smallest_at_nodes, &gaps.largest_at_nodes})
-          *value = std::abs(*value) < round_off * size ? 0. : *value;
-        bulge << "    of the nodes themselves " << gaps.smallest_at_nodes << " to " << gaps.largest_at_nodes
-              << "; contact acts on means around them, which touching faces of length h and relative radius R lower by "
-                 "h^2/(12 R) in each direction";
-        p.console.line(bulge.str());
-      }
+      console.line(name + ": " + describe(parameters));
+      console.line(text.str());
+      describe_bulge(gaps, surfaces.face_size(pair), console);
       for (const auto &[side, region, is_mesh] :
-           {std::make_tuple("slave", &parameters.contact_pairs[pair].slave, true),
-            std::make_tuple(
-                "master", &parameters.contact_pairs[pair].master, !parameters.contact_pairs[pair].has_rigid_master())})
-        if (is_mesh && is_one_face_wide(Region(*region, p.bodies, name), p.dof_handler, *p.mapping))
-          p.console.line(name + ": the " + side +
-                         " surface is one face wide; have more across it, unless the problem is a plane one");
-      if (const auto loci = p.site_loci(lost, 3); !loci.empty())
-        p.console.line(name + ": no master point for " + joined(loci, "; ") +
-                       (gaps.sites - gaps.found > loci.size() ? "; ..." : ""));
+           {std::make_tuple("slave", &parameters.slave, true),
+            std::make_tuple("master", &parameters.master, !parameters.has_rigid_master())})
+        if (is_mesh && is_one_face_wide(Region(*region, model.bodies, name), model.dof_handler, *model.mapping))
+          console.line(name + ": the " + side +
+                       " surface is one face wide; have more across it, unless the problem is a plane one");
+      if (const auto loci = model.contact->loci(lost, 3); !loci.empty())
+        console.line(name + ": no master point for " + joined(loci, "; ") +
+                     (gaps.sites - gaps.found > loci.size() ? "; ..." : ""));
     }
 
-    p.residual.jump.resize(p.surfaces->n_sites()); // nothing rubs yet
-    p.impose(p.path.target());
-    std::string free;
-    bool        may_wait = true; // friction may come to turn rigid bodies
-    for (const auto &motion : p.free_motions(OwnedNodes(p.dof_handler, *p.mapping)))
+    /// Motions that nothing holds as @p increment begins. Collective.
+    void describe_free_motions(const Model &model, const State &state, const Increment &increment, Console &console)
     {
-      free += (free.empty() ? "" : "; ") + motion.text;
-      for (unsigned int b = 0; b < p.bodies.size(); ++b)
-        may_wait = may_wait && (parameters.bodies[b].rigid || motion.moves[b] == std::array<bool, dim>{});
+      std::string free;
+      bool        may_wait = true; // friction may come to turn rigid bodies
+      for (const auto &motion : free_motions(model, state, increment.end))
+      {
+        free += (free.empty() ? "" : "; ") + motion.text;
+        for (unsigned int b = 0; b < model.bodies.size(); ++b)
+          may_wait = may_wait && (model.parameters.bodies[b].rigid || motion.moves[b] == std::array<bool, dim>{});
+      }
+      if (free.empty())
+        return;
+      const std::string holds =
+          model.stabilisation->acts() ? "viscous stabilisation does"
+          : may_wait
+              ? "contact or its friction has to"
+              : ways_to_hold(model, state, increment, "hold them with boundary conditions (soft springs will do)");
+      console.line(std::string(may_wait ? "  " : "  warning: ") +
+                   "nothing holds these motions as the run begins: " + free + "; " + holds);
     }
-    if (!free.empty())
-      p.console.line(std::string(may_wait ? "  " : "  warning: ") +
-                     "nothing holds these motions as the run begins: " + free + "; " +
-                     (p.stabilisation->acts() ? "viscous stabilisation does"
-                      : may_wait              ? "contact or its friction has to"
-                                 : p.ways_to_hold("hold them with boundary conditions (soft springs will do)")));
+  } // namespace
 
-    p.console.line("  loops: geometry " + text_of(parameters.geometry_loop.mode) + ", threshold " +
-                   text_of(parameters.threshold_loop.mode) + ", status " + text_of(parameters.status_loop.mode));
-    const auto solver = chosen_solver(parameters, p.dof_handler.n_dofs());
-    p.console.line(
-        "  linear solver: " + text_of(solver) +
-        (solver == parameters.linear_solver.type ? "" : " (" + text_of(parameters.linear_solver.type) + ")"));
-    p.console.line("  load path: " + describe(parameters.load_stepping));
-    p.console.line("  results: " + parameters.output.results_folder);
+  void validate(Model &model, States &states, const Increment &first, Console &console)
+  {
+    describe_bodies(model, console);
+    describe_conditions(model, console);
+    model.contact->begin(states.now.unknowns);
+    states.committed = states.now;
+    for (unsigned int pair = 0; pair < model.contact->surfaces().n_pairs(); ++pair)
+      describe_pair(model, pair, console);
+    model.contact->residual().jump.resize(model.contact->surfaces().n_sites()); // nothing rubs yet
+    model.impose(first);
+    describe_free_motions(model, states.now, first, console);
+    const Parameters &p = model.parameters;
+    console.line("  loops: geometry " + text_of(p.geometry_loop.mode) + ", threshold " +
+                 text_of(p.threshold_loop.mode) + ", status " + text_of(p.status_loop.mode));
+    const auto solver = chosen_solver(p, model.dof_handler.n_dofs());
+    console.line("  linear solver: " + text_of(solver) +
+                 (solver == p.linear_solver.type ? "" : " (" + text_of(p.linear_solver.type) + ")"));
+    console.line("  load path: " + describe(p.load_stepping));
+    console.line("  results: " + p.output.results_folder);
   }
 } // namespace Nodus

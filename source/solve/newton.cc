@@ -55,7 +55,8 @@ namespace Nodus
   {
     Report               report;
     BlockVector          correction;
-    NewtonProblem::Norms norms = problem.assemble();
+    problem.evaluate(false);
+    NewtonProblem::Norms norms = problem.accept(0);
     log(0, norms, 0);
     double       before = 0., forcing = parameters_.largest_forcing_term, best = std::numeric_limits<double>::max();
     unsigned int fewest = std::numeric_limits<unsigned int>::max(), idle = 0;
@@ -88,36 +89,35 @@ namespace Nodus
       const unsigned int krylov_iterations = problem.solve(correction, forcing);
       report.krylov_iterations += krylov_iterations;
       ++report.iterations;
-      problem.advance(1., correction);
-
-      // The first correction moves the prescribed displacements: its force residual says nothing about progress.
-      const bool search = parameters_.line_search && norms.prescribed <= parameters_.contact_tolerance;
-      double     step   = 1.;
-      for (unsigned int halving = 0;; ++halving)
-      {
-        NewtonProblem::Norms trial;
-        bool                 accept = true;
-        try
-        {
-          trial  = problem.assemble();
-          accept = !search || trial.changes > 0 || trial.force <= std::max(norms.force, parameters_.force_tolerance);
-        }
-        catch (const SolverFailure &)
-        {
-          if (halving == maximum_halvings)
-            throw;
-          accept = false;
-        }
-        if (accept || halving == maximum_halvings)
-        {
-          norms = trial;
-          break;
-        }
-        problem.advance(-0.5 * step, correction);
-        step *= 0.5;
-      }
+      take_step(problem, correction, norms);
+      norms = problem.accept(report.iterations);
       log(report.iterations, norms, krylov_iterations);
     }
     return report;
+  }
+
+  void
+  Newton::take_step(NewtonProblem &problem, const BlockVector &correction, const NewtonProblem::Norms &norms) const
+  {
+    // The first correction moves the prescribed displacements: its force residual says nothing about progress.
+    const bool search = parameters_.line_search && norms.prescribed <= parameters_.contact_tolerance;
+    double     step   = 1.;
+    for (unsigned int halving = 0;; ++halving)
+    {
+      const bool last = halving == maximum_halvings;
+      problem.move(step, correction);
+      try
+      {
+        const double force = problem.evaluate(search && !last);
+        if (!search || last || force <= std::max(norms.force, parameters_.force_tolerance))
+          return;
+      }
+      catch (const SolverFailure &failure)
+      {
+        if (last || failure.kind() != SolverFailure::Kind::inverted_cell)
+          throw;
+      }
+      step *= 0.5;
+    }
   }
 } // namespace Nodus

@@ -23,12 +23,17 @@ namespace Nodus
     };
 
     virtual ~NewtonProblem() = default;
-    /// Residual and tangent at the current iterate. @throws SolverFailure where they do not exist.
-    virtual Norms assemble() = 0;
+    /// Forces and their tangent at the trial iterate, every choice (pairing, thresholds, statuses) as it is.
+    /// @returns the relative force residual if @p measure, otherwise 0. @throws SolverFailure where they do not exist,
+    /// of the kind inverted_cell where half the step may help.
+    virtual double evaluate(bool measure) = 0;
+    /// The trial that was evaluated last is the iterate from here on: the choices follow it. @p iteration: corrections
+    /// so far. Completes residual and tangent. @throws SolverFailure
+    virtual Norms accept(unsigned int iteration) = 0;
     /// The correction, its linear residual reduced by @p relative_tolerance at least; returns the Krylov iterations.
     virtual unsigned int solve(BlockVector &correction, double relative_tolerance) = 0;
-    /// iterate += factor * correction.
-    virtual void advance(double factor, const BlockVector &correction) = 0;
+    /// trial = iterate + factor * correction: nothing is left of the trial before.
+    virtual void move(double factor, const BlockVector &correction) = 0;
   };
 
   class Newton
@@ -42,18 +47,21 @@ namespace Nodus
     {
       unsigned int iterations = 0, krylov_iterations = 0;
     };
-    /// Called after each assembly: iteration, norms, Krylov iterations of the correction that led here.
+    /// Called for each iterate: iteration, norms, Krylov iterations of the correction that led here.
     using Log = std::function<void(unsigned int, const NewtonProblem::Norms &, unsigned int)>;
 
     /// Solves from the current iterate; no correction when it already satisfies the tolerances without changes.
     /// Corrections are as exact as the next iterate can use: forcing terms of Eisenstat & Walker (1996), choice 2.
     /// A step into states that do not exist (det F <= 0) is halved, at most five times; with line search, so is one
-    /// that increases the force residual. @throws SolverFailure with the last norms.
+    /// that increases the force residual at the choices that the step was computed with. Every other failure goes up
+    /// at once. @throws SolverFailure with the last norms.
     Report solve(NewtonProblem &problem, const Log &log) const;
 
     bool converged(const NewtonProblem::Norms &norms) const;
 
   private:
+    /// Moves to a trial that exists and, with line search, decreases the force residual.
+    void take_step(NewtonProblem &problem, const BlockVector &correction, const NewtonProblem::Norms &norms) const;
     /// Largest norm in units of its tolerance.
     double residual(const NewtonProblem::Norms &norms) const;
 

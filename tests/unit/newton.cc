@@ -1,6 +1,7 @@
 // Newton and the loop record alone, without physics: a 2 x 2 system x^2 + y^2 = 4, x y = 1 (solution
-// x = (sqrt 6 + sqrt 2)/2, y = 1/x) converges quadratically; failures throw; a step out of the domain is halved;
-// progress is measured from the first correction on.
+// x = (sqrt 6 + sqrt 2)/2, y = 1/x) converges quadratically; failures throw; a step into inverted cells is halved, and
+// so is, with line search, one that does not decrease the force residual; any other failure goes up after one trial,
+// and of a trial that is rejected nothing is left; progress is measured from the first correction on.
 
 #include "solve/newton.h"
 #include "run/fixed_point_loop.h"
@@ -17,20 +18,32 @@ namespace
 {
   struct TwoByTwo : public NewtonProblem
   {
-    double x, y;
-    double domain; ///< assemble() fails for x below it
-    TwoByTwo(const double x0, const double y0, const double lower = -1e9)
+    double              x, y, from_x = 0., from_y = 0.;
+    double              domain; ///< evaluate() fails for x above it
+    SolverFailure::Kind kind   = SolverFailure::Kind::inverted_cell;
+    unsigned int        trials = 0, accepted = 0;
+    TwoByTwo(const double x0, const double y0, const double upper = 1e9)
         : x(x0)
         , y(y0)
-        , domain(lower)
+        , domain(upper)
     {
     }
-    Norms assemble() override
+    double force() const
     {
-      if (x < domain)
-        throw SolverFailure("outside the domain");
+      return std::abs(x * x + y * y - 4);
+    }
+    double evaluate(const bool measure) override
+    {
+      ++trials;
+      if (x > domain)
+        throw SolverFailure("outside the domain", kind);
+      return measure ? force() : 0.;
+    }
+    Norms accept(unsigned int) override
+    {
+      ++accepted;
       Norms norms;
-      norms.force   = std::abs(x * x + y * y - 4);
+      norms.force   = force();
       norms.contact = std::abs(x * y - 1);
       return norms;
     }
@@ -42,12 +55,14 @@ namespace
       correction.reinit(std::vector<dealii::IndexSet>{all}, MPI_COMM_WORLD);
       correction.block(0)(0) = (x * r0 - 2 * y * r1) / det;
       correction.block(0)(1) = (-y * r0 + 2 * x * r1) / det;
+      from_x                 = x;
+      from_y                 = y;
       return 3;
     }
-    void advance(const double factor, const BlockVector &correction) override
+    void move(const double factor, const BlockVector &correction) override
     {
-      x += factor * correction.block(0)(0);
-      y += factor * correction.block(0)(1);
+      x = from_x + factor * correction.block(0)(0);
+      y = from_y + factor * correction.block(0)(1);
     }
   };
 
@@ -60,7 +75,11 @@ namespace
         : factor(f)
     {
     }
-    Norms assemble() override
+    double evaluate(bool) override
+    {
+      return 0.;
+    }
+    Norms accept(unsigned int) override
     {
       Norms norms;
       norms.force   = assembled == 0 ? 1e-3 : std::pow(factor, assembled);
@@ -74,7 +93,7 @@ namespace
     {
       return 0;
     }
-    void advance(double, const BlockVector &) override
+    void move(double, const BlockVector &) override
     {
     }
   };
@@ -112,12 +131,35 @@ int main(int argc, char **argv)
     std::cout << std::string(failure.what()).substr(0, 42) << std::endl;
   }
 
-  // The full first step from here leaves the domain; halved steps get through.
+  // The full first step from here leaves the domain, x = 4.6; half of it does not.
   parameters.maximum_iterations = 25;
-  TwoByTwo narrow(4, 0.2, 1.9);
+  TwoByTwo narrow(0.5, 0.3, 3);
   report = Newton(parameters).solve(narrow, none);
-  std::cout << "inside the domain: " << (narrow.x > 1.9) << ", solution " << (std::abs(narrow.x - exact) < 1e-12)
+  std::cout << "inside the domain: " << (narrow.x < 3) << ", solution " << (std::abs(narrow.x - exact) < 1e-12)
             << std::endl;
+
+  std::cout << "trials " << narrow.trials << ", accepted " << narrow.accepted << std::endl;
+
+  // No halved step can cure another failure: it goes up after its first trial.
+  TwoByTwo other(0.5, 0.3, 3);
+  other.kind = SolverFailure::Kind::status_cycle;
+  try
+  {
+    Newton(parameters).solve(other, none);
+    std::cout << "no failure" << std::endl;
+  }
+  catch (const SolverFailure &failure)
+  {
+    std::cout << failure.what() << " after " << other.trials << " trials, accepted " << other.accepted << std::endl;
+  }
+
+  // The first correction from here overshoots: the full step has force residual 17.6, half of it 2.6, the start 3.7.
+  parameters.line_search = true;
+  TwoByTwo searched(0.5, 0.3);
+  report = Newton(parameters).solve(searched, none);
+  std::cout << "with line search: iterations " << report.iterations << ", trials " << searched.trials << ", x "
+            << searched.x << std::endl;
+  parameters.line_search = false;
 
   for (const double factor : {0.05, 1.})
     try

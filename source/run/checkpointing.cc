@@ -1,6 +1,6 @@
+#include "run/checkpointing.h"
 #include "base/complete_file.h"
-#include "run/contact_problem_implementation.h"
-#include "run/nodal_state.h"
+#include "run/state_vectors.h"
 #include <nodus/base/signals.h>
 
 #include <deal.II/base/mpi.h>
@@ -11,14 +11,13 @@
 #include <boost/serialization/map.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 
-// What a checkpoint holds: the state that commit() keeps, and what of the run is not in the parameters.
+// A checkpoint holds the committed state, and what of the run is not in the parameters.
 
 namespace Nodus
 {
@@ -29,16 +28,14 @@ namespace Nodus
     {
       std::map<std::string, std::string> model; ///< that the state belongs to
       LoadStepping                       path{LoadSteppingParameters()};
-      double                             stiffness_scale = 0.;
-      Energies                           energies;
-      std::vector<RigidBodies::State>    rigid_bodies;
+      std::vector<char>                  state; ///< common members of it
       Tables::Rows                       rows;
       VtuOutput::Series                  series;
 
       template <typename Archive>
       void serialize(Archive &archive, const unsigned int)
       {
-        archive &model &path &stiffness_scale &energies &rigid_bodies &series;
+        archive &model &path &state &series;
         archive &rows.contact &rows.reactions &rows.energies &rows.iterations &rows.rigid_bodies;
       }
     };
@@ -148,89 +145,99 @@ namespace Nodus
     }
   } // namespace
 
-  void ContactProblem::Implementation::write_checkpoint()
+  Checkpointing::Checkpointing(
+      Model &model, Journal &journal, States &states, Equilibrium &equilibrium, Results &results)
+      : model_(model)
+      , journal_(journal)
+      , states_(states)
+      , equilibrium_(equilibrium)
+      , results_(results)
+      , checkpoints_(model.parameters.output.results_folder, model.communicator)
   {
-    const auto timer = profile.time(Phase::output);
-    Common     common{
-        model_of(parameters), path, committed_stiffness_scale, energies, rigid_bodies->committed(), tables->rows(), {}};
-    if (vtu)
+  }
+
+  bool Checkpointing::exists()
+  {
+    return checkpoints_.find().has_value();
+  }
+
+  void Checkpointing::write(const LoadStepping &path)
+  {
+    const auto             timer    = journal_.profile.time(Phase::output);
+    const ContactSurfaces &surfaces = model_.contact->surfaces();
+    Common common{model_of(model_.parameters), path, pack_common(states_.committed), journal_.tables->rows(), {}};
+    if (const VtuOutput *const vtu = results_.vtu())
       common.series = vtu->series();
 
-    const std::vector<Vector> owned = nodal_state(false);
-    std::vector<Vector>       relevant_vectors(owned.size());
-    for (unsigned int n = 0; n < owned.size(); ++n)
-    {
-      relevant_vectors[n].reinit(surfaces->layout().owned[0], relevant, communicator);
-      relevant_vectors[n] = owned[n];
-    }
+    std::vector<Vector> vectors;
+    for (const Vector &v : exact_vectors(states_.committed, *model_.contact))
+      vectors.push_back(model_.with_ghosts(v));
 
     Checkpoints::Piece               piece;
-    std::vector<std::vector<double>> histories = solid->history();
+    std::vector<std::vector<double>> histories = model_.solid->history();
     unsigned int                     n_cells   = 0;
-    std::vector<DoFIndex>            dofs(fe.n_dofs_per_cell());
-    for (const auto &cell : dof_handler.active_cell_iterators())
+    std::vector<DoFIndex>            dofs(model_.fe.n_dofs_per_cell());
+    for (const auto &cell : model_.dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
       {
         cell->get_dof_indices(dofs);
         std::vector<double> values;
-        for (const Vector &v : relevant_vectors)
+        for (const Vector &v : vectors)
           for (const DoFIndex i : dofs)
             values.push_back(v(i));
         // only cells with slave nodes have the state of these; tangents are never zero
         const std::size_t n_always = n_displacement_vectors * dofs.size();
         if (std::all_of(values.begin() + n_always, values.end(), [](const double v) { return v == 0.; }))
           values.resize(n_always);
-        piece.cells.emplace_back(key_of(bodies, cell), std::move(values));
+        piece.cells.emplace_back(key_of(model_.bodies, cell), std::move(values));
         if (!histories[n_cells].empty())
-          piece.histories.emplace_back(key_of(bodies, cell), std::move(histories[n_cells]));
+          piece.histories.emplace_back(key_of(model_.bodies, cell), std::move(histories[n_cells]));
         ++n_cells;
       }
-    for (const auto &[face, first] : faces_with_points(bodies, *surfaces, dof_handler))
+    for (const auto &[face, first] : faces_with_points(model_.bodies, surfaces, model_.dof_handler))
     {
       std::vector<double> values;
-      for (unsigned int s = first; s < first + n_points(*surfaces, first); ++s)
+      for (unsigned int s = first; s < first + n_points(surfaces, first); ++s)
       {
-        const SiteState state = site_state(status->kept(s), committed_site_force[s], committed_site_jump[s]);
-        values.insert(values.end(), state.begin(), state.end());
+        const std::vector<double> of_site = site_values(states_.committed, s);
+        values.insert(values.end(), of_site.begin(), of_site.end());
       }
       piece.faces.emplace_back(face, std::move(values));
     }
-    checkpoints.write(path.increment() - 1, dealii::Utilities::pack(common), piece);
+    checkpoints_.write(path.increment() - 1, dealii::Utilities::pack(common), piece);
   }
 
-  void ContactProblem::Implementation::read_checkpoint()
+  void Checkpointing::read(LoadStepping &path)
   {
-    const auto timer = profile.time(Phase::set_up);
-    const auto found = checkpoints.find();
+    const auto timer = journal_.profile.time(Phase::set_up);
+    const auto found = checkpoints_.find();
     Assert(found, dealii::ExcInternalError()); // or there is no restart
     if (!found->remark.empty())
-      console.line("Passed over: " + found->remark);
+      journal_.console.line("Passed over: " + found->remark);
     const Common      common = dealii::Utilities::unpack<Common>(found->common);
-    const std::string other  = first_difference(common.model, model_of(parameters));
+    const std::string other  = first_difference(common.model, model_of(model_.parameters));
     throw_on_every_rank(other.empty() ? ""
-                                      : "the checkpoint in " + parameters.output.results_folder +
+                                      : "the checkpoint in " + model_.parameters.output.results_folder +
                                             " belongs to another model: " + other +
                                             "; change it back, or begin without --restart in another Results folder",
-                        communicator);
+                        model_.communicator);
     path.continue_from(common.path);
-    committed_stiffness_scale = common.stiffness_scale;
-    energies                  = common.energies;
-    rigid_bodies->restore(common.rigid_bodies);
-    tables->continue_from(common.rows);
-    if (vtu)
+    journal_.tables->continue_from(common.rows);
+    if (VtuOutput *const vtu = results_.vtu())
       vtu->continue_from(common.series);
 
     match_mesh(found->pieces);
     read_pieces(found->pieces);
-    paired_before = true;
-    roll_back();
+    unpack_common(common.state, states_.now);
+    states_.committed = states_.now;
+    model_.roll_back(states_);
     std::ostringstream text;
     text << "Continues after increment " << found->increment << ", t = " << path.time();
-    console.line(text.str());
+    journal_.console.line(text.str());
   }
 
   /// Refines and coarsens the mesh until its cells are those of the checkpoint.
-  void ContactProblem::Implementation::match_mesh(const std::vector<std::filesystem::path> &pieces)
+  void Checkpointing::match_mesh(const std::vector<std::filesystem::path> &pieces)
   {
     std::set<Checkpoints::Piece::CellKey> wanted;
     for (const auto &file : pieces)
@@ -240,14 +247,14 @@ namespace Nodus
     for (unsigned int round = 0; round < largest_level_change; ++round)
     {
       unsigned int changes = 0;
-      for (const auto &cell : bodies.triangulation().active_cell_iterators())
-        if (cell->is_locally_owned() && wanted.count(key_of(bodies, cell)) == 0)
+      for (const auto &cell : model_.bodies.triangulation().active_cell_iterators())
+        if (cell->is_locally_owned() && wanted.count(key_of(model_.bodies, cell)) == 0)
         {
           bool finer = false;
           for (auto coarser = Bodies::Triangulation::cell_iterator(cell); coarser->level() > 0 && !finer;)
           {
             coarser = coarser->parent();
-            finer   = wanted.count(key_of(bodies, coarser)) == 1;
+            finer   = wanted.count(key_of(model_.bodies, coarser)) == 1;
           }
           if (finer)
             cell->set_coarsen_flag();
@@ -255,40 +262,40 @@ namespace Nodus
             cell->set_refine_flag();
           ++changes;
         }
-      if (dealii::Utilities::MPI::max(changes, communicator) == 0)
+      if (dealii::Utilities::MPI::max(changes, model_.communicator) == 0)
         break;
-      if (!bodies.refinable())
-        throw InputError("the checkpoint in " + parameters.output.results_folder +
+      if (!model_.bodies.refinable())
+        throw InputError("the checkpoint in " + model_.parameters.output.results_folder +
                          " is of a refined mesh, but this run is to refine none: keep 'Adaptivity/Interval' (more than "
                          "there are increments, and the mesh stays as it is)");
-      bodies.refinable()->execute_coarsening_and_refinement();
+      model_.bodies.refinable()->execute_coarsening_and_refinement();
       changed = true;
     }
     if (!changed)
       return;
-    set_up_mesh();
-    begin_on_mesh();
+    model_.set_up_mesh(states_.now);
+    equilibrium_.begin_on_mesh();
+    results_.begin_on_mesh();
   }
 
-  /// The committed state of this rank's cells, from whatever ranks wrote them.
-  void ContactProblem::Implementation::read_pieces(const std::vector<std::filesystem::path> &pieces)
+  /// The state of this rank's cells, from whatever ranks wrote them.
+  void Checkpointing::read_pieces(const std::vector<std::filesystem::path> &pieces)
   {
+    const ContactSurfaces                                              &surfaces = model_.contact->surfaces();
     std::map<Checkpoints::Piece::CellKey, std::pair<Cell, std::size_t>> cells; // and the number of owned ones before
-    for (const auto &cell : dof_handler.active_cell_iterators())
+    for (const auto &cell : model_.dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
       {
-        const std::size_t n         = cells.size();
-        cells[key_of(bodies, cell)] = {cell, n};
+        const std::size_t n                = cells.size();
+        cells[key_of(model_.bodies, cell)] = {cell, n};
       }
     std::vector<std::vector<double>> histories(cells.size());
-    const auto                       faces = faces_with_points(bodies, *surfaces, dof_handler);
+    const auto                       faces = faces_with_points(model_.bodies, surfaces, model_.dof_handler);
 
-    std::vector<Vector> vectors(n_displacement_vectors + n_node_vectors,
-                                Vector(surfaces->layout().owned[0], communicator));
-
-    std::vector<SiteState> sites(surfaces->n_sites());
-    std::vector<DoFIndex>  dofs(fe.n_dofs_per_cell());
-    std::size_t            missing = cells.size() + faces.size();
+    std::vector<Vector>   vectors(n_state_vectors(), Vector(surfaces.layout().owned[0], model_.communicator));
+    std::vector<double>   sites(n_site_values() * surfaces.n_sites(), 0.);
+    std::vector<DoFIndex> dofs(model_.fe.n_dofs_per_cell());
+    std::size_t           missing = cells.size() + faces.size();
     for (const auto &file : pieces)
     {
       const Checkpoints::Piece piece = Checkpoints::read(file);
@@ -298,7 +305,7 @@ namespace Nodus
           --missing;
           cell->second.first->get_dof_indices(dofs);
           for (unsigned int i = 0; i < values.size(); ++i)
-            if (const DoFIndex dof = dofs[i % dofs.size()]; surfaces->layout().owned[0].is_element(dof))
+            if (const DoFIndex dof = dofs[i % dofs.size()]; surfaces.layout().owned[0].is_element(dof))
               vectors[i / dofs.size()](dof) = values[i];
         }
       for (const auto &[key, values] : piece.histories)
@@ -309,28 +316,27 @@ namespace Nodus
         {
           --missing;
           for (unsigned int i = 0; i < values.size(); ++i)
-            sites[face->second + i / n_site][i % n_site] = values[i];
+            sites[n_site_values() * face->second + i] = values[i];
         }
     }
     throw_on_every_rank(missing == 0 ? "" : "the checkpoint does not cover the mesh; begin without --restart",
-                        communicator);
-    solid->set_history(histories);
+                        model_.communicator);
+    model_.solid->set_history(histories);
 
     for (Vector &v : vectors)
       v.compress(dealii::VectorOperation::insert);
-    set_nodal_state(vectors, false, std::move(sites));
+    states_.now.history = model_.solid->start();
+    take_exact(vectors, std::move(sites), *model_.contact, states_.now);
   }
 
-  /// Once per Newton iteration: writes a checkpoint of what converged last where a signal asks for it. @throws
-  /// Interrupted where it asks for the end.
-  void ContactProblem::Implementation::heed_signals()
+  void Checkpointing::heed_signals(const LoadStepping &path)
   {
-    const Signals::Request request = Signals::received(communicator);
+    const Signals::Request request = Signals::received(model_.communicator);
     if (!request.checkpoint)
       return;
     const bool worthwhile = path.increment() > 1;
     if (worthwhile)
-      write_checkpoint();
+      write(path);
     if (request.end != 0)
     {
       std::ostringstream message;
@@ -341,6 +347,7 @@ namespace Nodus
         message << ": nothing had converged";
       throw Interrupted(request.end, message.str());
     }
-    console.remark(worthwhile ? "checkpoint written, as SIGUSR1 asked for" : "no checkpoint: nothing has converged");
+    journal_.console.remark(worthwhile ? "checkpoint written, as SIGUSR1 asked for"
+                                       : "no checkpoint: nothing has converged");
   }
 } // namespace Nodus

@@ -1,0 +1,483 @@
+#include "contact/contact_interface.h"
+#include "contact/geometry_tangent.h"
+#include "contact/site_values.h"
+#include "contact/tractions.h"
+#include "mesh/sides.h"
+#include "parallel/wait_for_all.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace Nodus
+{
+  namespace
+  {
+    /// rho_n = factor E/h: the stiffness of a layer one slave face deep, of the softer material.
+    std::vector<double> normal_augmentation(const std::vector<ContactPairParameters> &pairs,
+                                            const std::vector<double>                &stiffness,
+                                            const ContactSurfaces                    &surfaces)
+    {
+      std::vector<double> augmentation;
+      for (unsigned int p = 0; p < pairs.size(); ++p)
+        augmentation.push_back(pairs[p].normal_augmentation_factor * stiffness[p] / surfaces.face_size(p));
+      return augmentation;
+    }
+  } // namespace
+
+  ContactInterface::ContactInterface(const std::vector<ContactPairParameters> &pairs,
+                                     const std::vector<double>                &stiffness,
+                                     const Bodies                             &bodies,
+                                     const dealii::DoFHandler<dim>            &dof_handler,
+                                     const dealii::Mapping<dim>               &mapping,
+                                     const RigidBodies                        &rigid_bodies,
+                                     InterfaceState                           &now)
+      : pairs_(pairs)
+      , rigid_bodies_(rigid_bodies)
+      , now_(now)
+      , surfaces_(pairs, bodies, dof_handler, mapping)
+      , status_(pairs, surfaces_, normal_augmentation(pairs, stiffness, surfaces_), stiffness, now.statuses)
+      , assembler_(surfaces_, pairing_, jump_, weights_, status_)
+  {
+    std::vector<unsigned int> rigid_numbers(bodies.size(), dealii::numbers::invalid_unsigned_int);
+    for (unsigned int i = 0; i < rigid_bodies.size(); ++i)
+      rigid_numbers[rigid_bodies.body(i)] = i;
+    surfaces_.set_rigid_bodies(rigid_numbers);
+    now_.tangents.assign(surfaces_.slave_nodes().size(), {});
+    now_.area.assign(surfaces_.slave_nodes().size(), 0.);
+    now_.force.assign(surfaces_.n_sites(), Vector3());
+    now_.jump.assign(surfaces_.n_sites(), Vector3());
+    now_.on_new_mesh = false;
+    now_.stuck.assign(surfaces_.n_sites(), 0);
+  }
+
+  void ContactInterface::begin_increment(const double begin, const double end, const double resolved_interference)
+  {
+    surfaces_.move_rigid_masters(begin, end);
+    status_.set_resolved_interference(resolved_interference);
+  }
+
+  void ContactInterface::begin_attempt()
+  {
+    status_.begin_increment();
+    pairing_.set_partnered(now_.statuses.contact);
+  }
+
+  // ---------------------------------------------------------------------------------------------------- geometry pass
+
+  void ContactInterface::begin(const BlockVector &unknowns)
+  {
+    surfaces_.fetch_masters(unknowns.block(0));
+    gather(unknowns, unknowns.block(0));
+    // the first statuses are those before anything has moved, rigid masters included
+    surfaces_.move_rigid_masters(0., 0.);
+    freeze_geometry();
+    start_statuses();
+    keep_frames();
+  }
+
+  void ContactInterface::gather(const BlockVector &unknowns, const Vector &start)
+  {
+    std::vector<Vector3> u, u_start;
+    surfaces_.gather(unknowns.block(0), u);
+    surfaces_.gather(start, u_start);
+    state_.x = surfaces_.positions(u);
+    state_.centre.resize(rigid_bodies_.size());
+    for (unsigned int b = 0; b < rigid_bodies_.size(); ++b)
+      state_.centre[b] = rigid_bodies_.centre(b);
+    state_.increment.resize(u.size());
+    state_.prescribed.resize(u.size());
+    for (unsigned int i = 0; i < u.size(); ++i)
+      state_.increment[i] = u[i] - u_start[i];
+
+    const unsigned int  n = surfaces_.slave_nodes().size();
+    std::vector<double> all(3 * n, 0.);
+    for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
+    {
+      const DoFIndex multiplier = surfaces_.multiplier(k);
+      all[3 * k]                = unknowns.block(1)(multiplier);
+      all[3 * k + 1]            = unknowns.block(2)(2 * multiplier);
+      all[3 * k + 2]            = unknowns.block(2)(2 * multiplier + 1);
+    }
+    surfaces_.slave_exchange().update(all, 3);
+    state_.lambda.resize(n);
+    state_.Lambda.resize(n);
+    for (unsigned int k = 0; k < n; ++k)
+    {
+      state_.lambda[k] = all[3 * k];
+      state_.Lambda[k] = {{all[3 * k + 1], all[3 * k + 2]}};
+    }
+  }
+
+  void ContactInterface::pair(BlockVector &unknowns, const Vector &start)
+  {
+    geometry_.reset(); // it refers to the faces
+    surfaces_.fetch_masters(unknowns.block(0));
+    gather(unknowns, start);
+    freeze_geometry();
+    status_.inherit(pairing_);
+    for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
+    {
+      const DoFIndex multiplier = surfaces_.multiplier(k);
+      Vector3        Lambda;
+      for (unsigned int i = 0; i < 2; ++i)
+        Lambda += state_.Lambda[k][i] * now_.tangents[k][i];
+      double component[2] = {0., 0.};
+      for (unsigned int i = 0; i < 2; ++i)
+        if (pairing_[k].found && pairing_[k].tangent_free[i])
+          component[i] = Lambda * pairing_[k].tangent[i];
+      const double norm = std::hypot(component[0], component[1]);
+      for (unsigned int i = 0; i < 2; ++i)
+        unknowns.block(2)(2 * multiplier + i) = norm > 0. ? component[i] * Lambda.norm() / norm : 0.;
+      const double ratio            = now_.area[k] > 0. ? now_.area[k] / weights_.area()[k] : 1.;
+      unknowns.block(1)(multiplier) = pairing_[k].found ? state_.lambda[k] * ratio : 0.;
+    }
+    keep_frames();
+    unknowns.block(1).compress(dealii::VectorOperation::insert);
+    unknowns.block(2).compress(dealii::VectorOperation::insert);
+    gather(unknowns, start);
+  }
+
+  void ContactInterface::resume(const BlockVector &unknowns, const Vector &start)
+  {
+    status_.resume();
+    pairing_.set_partnered(now_.statuses.contact);
+    gather(unknowns, start);
+  }
+
+  /// Projections, frames, jump operator and surface weights at the current positions.
+  void ContactInterface::freeze_geometry()
+  {
+    paired_at_ = state_.x;
+    surfaces_.place_carried_masters(paired_at_);
+    geometry_ = std::make_unique<ContactGeometry>(pairs_, surfaces_, paired_at_);
+    averaged_.compute(pairs_, surfaces_, *geometry_, paired_at_, reference_positions());
+    pairing_.project(pairs_, surfaces_, *geometry_, averaged_);
+    jump_.build(pairs_, surfaces_, *geometry_, pairing_, averaged_);
+    weigh();
+    if (now_.on_new_mesh)
+      carry_over_sticking();
+    wait_for_all(surfaces_.layout().communicator);
+  }
+
+  /// The multipliers refer to the frames and areas of the last pairing from here on.
+  void ContactInterface::keep_frames()
+  {
+    for (unsigned int k = 0; k < now_.tangents.size(); ++k)
+      now_.tangents[k] = pairing_[k].tangent;
+    now_.area = weights_.area();
+  }
+
+  void ContactInterface::weigh()
+  {
+    weights_.compute(pairs_, surfaces_, averaged_, paired_at_, reference_positions(), status_.lumped());
+  }
+
+  /// On a new mesh: sites that stick do so where the surfaces stuck, not where interpolated displacements that are not
+  /// in equilibrium have put them: the jump of the displacement is taken over besides these. Where the difference would
+  /// change friction by more than its limit it is one of geometry (slip on curved surfaces), and left out.
+  void ContactInterface::carry_over_sticking()
+  {
+    std::vector<Vector3> u = displacement();
+    for (unsigned int n = 0; n < u.size(); ++n)
+      u[n] -= state_.increment[n];
+    std::vector<Vector3> stuck(surfaces_.n_sites());
+    for (unsigned int s = 0; s < stuck.size(); ++s)
+    {
+      if (!surfaces_.is_owned(s) || !now_.stuck[s] || !pairing_[s].found || !status_.friction(s) || !status_.stick(s))
+        continue;
+      Vector3 moved = jump_.jump(s, u) - now_.jump[s];
+      moved -= (moved * pairing_[s].normal) * pairing_[s].normal;
+      if (status_.tangential_augmentation(s, status_.threshold(s)) * moved.norm() <= 1.)
+        stuck[s] = moved;
+    }
+    surfaces_.site_exchange().update(stuck);
+    jump_.set_stuck(std::move(stuck));
+  }
+
+  /// Statuses of the first pairing.
+  void ContactInterface::start_statuses()
+  {
+    const MPI_Comm            communicator = surfaces_.layout().communicator;
+    std::vector<double>       distances;
+    std::vector<double>       deepest(surfaces_.n_pairs(), 0.);
+    std::vector<unsigned int> where(surfaces_.n_pairs(), dealii::numbers::invalid_unsigned_int);
+    for (unsigned int s = 0; s < pairing_.size(); ++s)
+    {
+      distances.push_back(distance(s));
+      const unsigned int p = surfaces_.pair(s);
+      if (surfaces_.is_owned(s) && surfaces_.has_status(s) && pairing_[s].found && distances[s] > deepest[p])
+      {
+        deepest[p] = distances[s];
+        where[p]   = s;
+      }
+    }
+    for (unsigned int p = 0; p < surfaces_.n_pairs(); ++p)
+    {
+      const auto        &pair  = pairs_[p];
+      const double       limit = pair.overclosure_limit > 0. ? pair.overclosure_limit : 0.5 * surfaces_.face_size(p);
+      const auto         worst = dealii::Utilities::MPI::min_max_avg(deepest[p], communicator);
+      const bool         here  = dealii::Utilities::MPI::this_mpi_process(communicator) == worst.max_index;
+      const std::string  place = locus(here ? where[p] : dealii::numbers::invalid_unsigned_int);
+      std::ostringstream message;
+      message << "the bodies overlap at the start: " << place << " is " << worst.max
+              << " inside the master, the limit is " << limit << "; move the bodies apart, or raise 'Contact pair "
+              << p + 1 << "/Overclosure limit' if this is meant";
+      if (worst.max > limit)
+        throw InputError(message.str());
+    }
+    status_.initialize(pairing_, distances);
+  }
+
+  std::vector<Point> ContactInterface::reference_positions() const
+  {
+    return surfaces_.positions(std::vector<Vector3>(surfaces_.nodes().size()));
+  }
+
+  /// Displacements of the surface nodes.
+  std::vector<Vector3> ContactInterface::displacement() const
+  {
+    const std::vector<Point> X = reference_positions();
+    std::vector<Vector3>     u(X.size());
+    for (unsigned int n = 0; n < u.size(); ++n)
+      u[n] = state_.x[n] - X[n];
+    return u;
+  }
+
+  // ------------------------------------------------------------------------------------------ thresholds and statuses
+
+  bool ContactInterface::has_friction() const
+  {
+    return status_.has_friction();
+  }
+
+  bool ContactInterface::slides() const
+  {
+    return has_friction() && std::any_of(pairs_.begin(),
+                                         pairs_.end(),
+                                         [](const ContactPairParameters &pair)
+                                         { return pair.contact_law != ContactPairParameters::ContactLaw::tied; });
+  }
+
+  bool ContactInterface::threshold_follows_pressure() const
+  {
+    return status_.threshold_follows_pressure();
+  }
+
+  void ContactInterface::freeze_threshold(const double duration)
+  {
+    update_slip_rates(duration);
+    status_.freeze_threshold(pressure());
+  }
+
+  void ContactInterface::follow_pressure(const double duration, BlockVector &unknowns, const Vector &start)
+  {
+    std::vector<double> before(status_.size());
+    for (unsigned int k = 0; k < before.size(); ++k)
+      before[k] = status_.friction(k) ? status_.threshold(k) : 0.;
+    freeze_threshold(duration);
+    for (const ContactPoint &point : weights_.points())
+      if (const unsigned int k = point.slaves[0]; point.slaves.size() == 1 && surfaces_.is_owned(k) &&
+                                                  before[k] != 0. && status_.friction(k) && status_.stick(k))
+        for (unsigned int i = 0; i < 2; ++i)
+          unknowns.block(2)(2 * surfaces_.multiplier(k) + i) = state_.Lambda[k][i] * before[k] / status_.threshold(k);
+    unknowns.block(2).compress(dealii::VectorOperation::insert);
+    gather(unknowns, start);
+  }
+
+  void ContactInterface::update_slip_rates(const double duration)
+  {
+    if (!status_.friction_varies() || duration == 0.)
+      return;
+    std::vector<double> rate(surfaces_.n_sites(), 0.);
+    for (unsigned int s = 0; s < rate.size(); ++s)
+      if (surfaces_.is_owned(s))
+      {
+        const auto moved = slip(s);
+        rate[s]          = std::hypot(moved[0], moved[1]) / duration;
+      }
+    status_.set_slip_rates(rate);
+  }
+
+  std::vector<double> ContactInterface::pressure() const
+  {
+    return site_pressure(surfaces_, weights_, status_, state_.lambda);
+  }
+
+  StatusInput ContactInterface::status_input() const
+  {
+    return Nodus::status_input(pairs_, surfaces_, pairing_, weights_, status_, assembler_, state_);
+  }
+
+  Status::Update ContactInterface::update_statuses(const bool closing_only)
+  {
+    return status_.update(status_input(), closing_only);
+  }
+
+  void ContactInterface::pass_to_regularised_law(BlockVector &unknowns, const Vector &start)
+  {
+    const std::vector<double> mean   = pressure();
+    const std::vector<bool>   lumped = status_.lumped();
+    weigh();
+    for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
+      if (lumped[surfaces_.pair(k)])
+        unknowns.block(1)(surfaces_.multiplier(k)) = mean[k];
+    unknowns.block(1).compress(dealii::VectorOperation::insert);
+    gather(unknowns, start);
+  }
+
+  Status::Violation ContactInterface::frozen_violation() const
+  {
+    return status_.frozen_violation(status_input());
+  }
+
+  // ------------------------------------------------------------------------------------------------ residual, tangent
+
+  void ContactInterface::set_prescribed(const Vector &prescribed)
+  {
+    surfaces_.gather(prescribed, state_.prescribed);
+  }
+
+  void ContactInterface::set_prescribed()
+  {
+    state_.prescribed.assign(state_.x.size(), Vector3());
+  }
+
+  void ContactInterface::assemble(LinearSystem &system, const bool linearise_threshold)
+  {
+    residual_ = assembler_.assemble(state_, system, linearise_threshold);
+  }
+
+  void ContactInterface::add_geometry_tangent(LinearSystem &system) const
+  {
+    GeometryTangent(pairs_, surfaces_, *geometry_, averaged_, pairing_, jump_, weights_, status_)
+        .add(state_, residual_, system);
+  }
+
+  void ContactInterface::add_forces(Vector &force) const
+  {
+    assembler_.add_forces(residual_, force);
+  }
+
+  double ContactInterface::norm(const double length) const
+  {
+    return assembler_.norm(residual_, length);
+  }
+
+  // -------------------------------------------------------------------------------------------------------- state kept
+
+  void ContactInterface::end_increment()
+  {
+    std::vector<std::array<double, 2>> slips;
+    for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
+      slips.push_back(status_.holds_friction(s) ? std::array<double, 2>{{0., 0.}} : slip(s));
+    status_.add_slip(slips);
+    for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
+      if (surfaces_.is_owned(s) && surfaces_.has_status(s))
+        now_.force[s] = -residual_.jump[s];
+    now_.jump = displacement_jumps();
+    now_.area = weights_.area();
+    now_.stuck.assign(now_.stuck.size(), 0);
+    now_.on_new_mesh = false;
+    jump_.set_stuck({});
+  }
+
+  std::vector<ContactFields> ContactInterface::fields() const
+  {
+    return contact_fields(pairs_, surfaces_, pairing_, weights_, status_, assembler_, state_, residual_);
+  }
+
+  std::vector<ContactResultants> ContactInterface::resultants() const
+  {
+    return contact_resultants(pairs_, surfaces_, pairing_, jump_, weights_, status_, state_, residual_);
+  }
+
+  void ContactInterface::hold(UnconstrainedModes &motions, const bool as_closed) const
+  {
+    motions.hold_contact(surfaces_, pairing_, jump_, status_, state_, residual_, as_closed);
+  }
+
+  // ------------------------------------------------------------------------------------------------- values and places
+
+  double ContactInterface::distance(const unsigned int site) const
+  {
+    return assembler_.distance(state_, site);
+  }
+
+  std::array<double, 2> ContactInterface::slip(const unsigned int site) const
+  {
+    return assembler_.slip(state_, site);
+  }
+
+  std::vector<Vector3> ContactInterface::displacement_jumps() const
+  {
+    const std::vector<Vector3> u = displacement();
+    std::vector<Vector3>       jumps;
+    for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
+      jumps.push_back(jump_.jump(s, u));
+    return jumps;
+  }
+
+  unsigned int ContactInterface::n_closed() const
+  {
+    unsigned int n = 0;
+    for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
+      n += surfaces_.is_owned(s) && surfaces_.has_status(s) && status_.contact(s);
+    return dealii::Utilities::MPI::sum(n, surfaces_.layout().communicator);
+  }
+
+  double ContactInterface::largest_difference(const Vector &a, const Vector &b, std::string *const worst) const
+  {
+    std::vector<Vector3> u, v;
+    surfaces_.gather(a, u);
+    surfaces_.gather(b, v);
+    double      largest = 0.;
+    std::string here    = u.empty() ? "" : coordinates(surfaces_.nodes()[0].X);
+    for (unsigned int i = 0; i < u.size(); ++i)
+      if (const double difference = (u[i] - v[i]).norm(); difference > largest)
+      {
+        largest = difference;
+        here    = coordinates(surfaces_.nodes()[i].X);
+      }
+    const MPI_Comm communicator = surfaces_.layout().communicator;
+    const auto     all          = dealii::Utilities::MPI::min_max_avg(largest, communicator);
+    if (worst != nullptr)
+      *worst = dealii::Utilities::MPI::broadcast(communicator, here, all.max_index);
+    return all.max;
+  }
+
+  std::string ContactInterface::locus(const unsigned int site) const
+  {
+    const auto found =
+        loci(site < surfaces_.n_sites() ? std::vector<unsigned int>{site} : std::vector<unsigned int>(), 1);
+    return found.empty() ? "" : found.front();
+  }
+
+  std::vector<std::string> ContactInterface::loci(const std::vector<unsigned int> &sites, const unsigned int n) const
+  {
+    std::vector<unsigned int> ordered(sites);
+    std::sort(ordered.begin(),
+              ordered.end(),
+              [&](const auto a, const auto b) { return surfaces_.order(a) < surfaces_.order(b); });
+    std::vector<std::pair<DoFIndex, std::string>> first;
+    for (unsigned int i = 0; i < std::min<std::size_t>(n, ordered.size()); ++i)
+    {
+      const unsigned int site = ordered[i], p = surfaces_.pair(site);
+      const auto        &name = pairs_[p].name;
+      first.emplace_back(surfaces_.order(site),
+                         (surfaces_.is_point(site) ? "integration point " : "slave node ") +
+                             coordinates(surfaces_.site_position(site)) + " of contact pair " + std::to_string(p + 1) +
+                             (name.empty() ? "" : " ('" + name + "')"));
+    }
+    std::vector<std::pair<DoFIndex, std::string>> all;
+    for (const auto &part : dealii::Utilities::MPI::all_gather(surfaces_.layout().communicator, first))
+      all.insert(all.end(), part.begin(), part.end());
+    std::sort(all.begin(), all.end());
+    std::vector<std::string> found;
+    for (unsigned int i = 0; i < std::min<std::size_t>(n, all.size()); ++i)
+      found.push_back(all[i].second);
+    return found;
+  }
+} // namespace Nodus

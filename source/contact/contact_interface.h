@@ -1,0 +1,191 @@
+#ifndef nodus_contact_contact_interface_h
+#define nodus_contact_contact_interface_h
+
+#include "contact/averaged_jump.h"
+#include "contact/contact_assembler.h"
+#include "contact/contact_geometry.h"
+#include "contact/interface_state.h"
+#include "contact/jump_operator.h"
+#include "contact/pairing.h"
+#include "contact/status.h"
+#include "contact/surface.h"
+#include "contact/surface_weights.h"
+#include "contact/unconstrained_modes.h"
+#include "rigid/rigid_bodies.h"
+#include <nodus/contact/contact_fields.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Nodus
+{
+  /// All contact pairs on one mesh, as the mechanics talks to them: surfaces, pairing, jump operator, weights, statuses
+  /// and assembler of all pairs.
+  ///
+  /// Positions, multipliers and statuses are those of the last gather(); pairing, jumps and weights those of the last
+  /// pair(). What lasts beyond an increment stands in the InterfaceState that it refers to. Most functions are
+  /// collective.
+  class ContactInterface
+  {
+  public:
+    /// @p stiffness: Young's modulus of the softer side of each pair [pressure]. The references outlive the object;
+    /// @p now is set to that before the first pairing.
+    ContactInterface(const std::vector<ContactPairParameters> &pairs,
+                     const std::vector<double>                &stiffness,
+                     const Bodies                             &bodies,
+                     const dealii::DoFHandler<dim>            &dof_handler,
+                     const dealii::Mapping<dim>               &mapping,
+                     const RigidBodies                        &rigid_bodies,
+                     InterfaceState                           &now);
+
+    /// Where rigid masters are in the increment from @p begin to @p end, and which part of the interference of fits is
+    /// pressed out by its end.
+    void begin_increment(double begin, double end, double resolved_interference);
+    /// An attempt at it: closed sites have a partner, the laws are not regularised, the ledger is empty.
+    void begin_attempt();
+
+    /// The first pairing of a run, at the displacements of @p unknowns, and the statuses that belong to it. @throws
+    /// InputError on every rank where the bodies overlap too much.
+    void begin(const BlockVector &unknowns);
+    /// Takes positions and multipliers from @p unknowns; @p start: displacements as the increment began.
+    void gather(const BlockVector &unknowns, const Vector &start);
+    /// Projects anew at the displacements of @p unknowns and carries its multipliers over: Lambda keeps its direction
+    /// in space and its length in the new tangent planes, lambda the nodal force; nodes without partner lose all.
+    void pair(BlockVector &unknowns, const Vector &start);
+    /// The state that this refers to has been set to another one, to which @p unknowns belong.
+    void resume(const BlockVector &unknowns, const Vector &start);
+
+    /// Pairs with friction at all, with friction that is not tied, with thresholds that follow the pressure.
+    bool has_friction() const;
+    bool slides() const;
+    bool threshold_follows_pressure() const;
+
+    /// Freezes the thresholds of the present pressures and, where friction depends on them, of the present slip rates.
+    /// @p duration of the increment [time]; 0: the rates stay.
+    void freeze_threshold(double duration);
+    /// The same within Newton's iteration: sticking nodes keep their friction traction mu lambda Lambda, which as
+    /// unknown of the iteration is linear.
+    void follow_pressure(double duration, BlockVector &unknowns, const Vector &start);
+    void update_slip_rates(double duration);
+    /// Contact pressure of every site (site_values.h).
+    std::vector<double> pressure() const;
+
+    /// Tests and changes the statuses (Status::update).
+    Status::Update update_statuses(bool closing_only);
+    /// The laws have just been regularised: multipliers of lumped weights become the nodal means that those of
+    /// consistent weights had.
+    void pass_to_regularised_law(BlockVector &unknowns, const Vector &start);
+    /// Of the sites that were frozen in this loop.
+    Status::Violation frozen_violation() const;
+
+    /// What the next correction must add at prescribed components, zero elsewhere; zero without it.
+    void set_prescribed(const Vector &prescribed);
+    void set_prescribed();
+    /// Contact terms of @p system and the residual (ContactAssembler::assemble).
+    void assemble(LinearSystem &system, bool linearise_threshold = false);
+    /// What the tangent gains where the geometry follows the iterate, after assemble().
+    void add_geometry_tangent(LinearSystem &system) const;
+    /// Nodal contact forces, at prescribed components too.
+    void add_forces(Vector &force) const;
+    /// Largest relative violation of the contact and friction laws: lengths over @p length.
+    double norm(double length) const;
+
+    /// The increment has converged: slips, forces, jumps and areas become those that the next one begins with.
+    void end_increment();
+
+    /// What the user sees, of this rank's part of the surfaces and on all ranks.
+    std::vector<ContactFields>     fields() const;
+    std::vector<ContactResultants> resultants() const;
+    /// Motions that contact holds (UnconstrainedModes::hold_contact).
+    void hold(UnconstrainedModes &motions, bool as_closed) const;
+
+    /// d_n without what is adjusted, and the tangential jump of the increment, at an owned site.
+    double                distance(unsigned int site) const;
+    std::array<double, 2> slip(unsigned int site) const;
+    /// Jump of the displacement at the last gather().
+    std::vector<Vector3> displacement_jumps() const;
+
+    /// Closed sites of all ranks.
+    unsigned int n_closed() const;
+    /// Largest difference of two displacements at a surface node, and where it is.
+    double largest_difference(const Vector &a, const Vector &b, std::string *worst = nullptr) const;
+    /// Where the first of the sites is that the ranks name; an invalid number names none.
+    std::string locus(unsigned int site) const;
+    /// Where the first @p n of the @p sites of all ranks are, owned ones.
+    std::vector<std::string> loci(const std::vector<unsigned int> &sites, unsigned int n) const;
+
+    ContactSurfaces &surfaces()
+    {
+      return surfaces_;
+    }
+    const ContactSurfaces &surfaces() const
+    {
+      return surfaces_;
+    }
+    /// Null before the first pairing.
+    const ContactGeometry *geometry() const
+    {
+      return geometry_.get();
+    }
+    const Pairing &pairing() const
+    {
+      return pairing_;
+    }
+    const JumpOperator &jump() const
+    {
+      return jump_;
+    }
+    const SurfaceWeights &weights() const
+    {
+      return weights_;
+    }
+    Status &status()
+    {
+      return status_;
+    }
+    const Status &status() const
+    {
+      return status_;
+    }
+    const ContactState &state() const
+    {
+      return state_;
+    }
+    ContactResidual &residual()
+    {
+      return residual_;
+    }
+    const ContactResidual &residual() const
+    {
+      return residual_;
+    }
+
+  private:
+    void                 freeze_geometry();
+    void                 keep_frames();
+    void                 weigh();
+    void                 carry_over_sticking();
+    void                 start_statuses();
+    std::vector<Point>   reference_positions() const;
+    std::vector<Vector3> displacement() const;
+    StatusInput          status_input() const;
+
+    const std::vector<ContactPairParameters> &pairs_;
+    const RigidBodies                        &rigid_bodies_;
+    InterfaceState                           &now_;
+    ContactSurfaces                           surfaces_;
+    std::vector<Point>                        paired_at_; ///< positions of the surface nodes at the last pairing
+    std::unique_ptr<ContactGeometry>          geometry_;  ///< of that
+    AveragedJump                              averaged_;
+    Pairing                                   pairing_;
+    JumpOperator                              jump_;
+    SurfaceWeights                            weights_;
+    Status                                    status_;
+    ContactAssembler                          assembler_;
+    ContactState                              state_;
+    ContactResidual                           residual_;
+  };
+} // namespace Nodus
+
+#endif

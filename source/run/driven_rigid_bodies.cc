@@ -1,0 +1,294 @@
+#include "run/driven_rigid_bodies.h"
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/lac/lapack_full_matrix.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace Nodus
+{
+  namespace
+  {
+    constexpr unsigned int n_components = RigidBodies::n_components;
+    /// A motion whose stiffness is below this part of the largest one, or of what a cell resists, is free. Iterative
+    /// solvers leave as much of the stiffness of others.
+    constexpr double free_fraction_direct = 1e-10, free_fraction_iterative = 1e-6;
+    /// Relative residual of iterative solvers for the response to the motion of rigid bodies.
+    constexpr double response_tolerance = 1e-8;
+
+    /// Force on a motion that nothing resists, of all forces, which leaves it at rest.
+    constexpr double negligible_force = 1e-8;
+    /// Components of a motion below this part of the largest one are not named.
+    constexpr double round_off = 1e-3;
+
+    std::string text_of(const Vector3 &v)
+    {
+      std::ostringstream text;
+      text.precision(3);
+      text << '(' << v << ')';
+      return text.str();
+    }
+  } // namespace
+
+  DrivenRigidBodies::DrivenRigidBodies(const Model &model, const States &states)
+      : model_(model)
+      , states_(states)
+  {
+  }
+
+  /// Adds the forces at the nodes of driven rigid bodies, viscous ones included, to the border and to the resultants
+  /// of the residual. Of this rank.
+  void DrivenRigidBodies::add_nodes(LinearSystem &system, const Vector &internal, const Vector &external)
+  {
+    const RigidBodies     &rigid_bodies = model_.rigid_bodies;
+    const ContactSurfaces &surfaces     = model_.contact->surfaces();
+    const Vector          &u            = states_.now.unknowns.block(0);
+    ContactResidual       &residual     = model_.contact->residual();
+    const BlockLayout     &layout       = surfaces.layout();
+    for (unsigned int b = 0; b < rigid_bodies.size(); ++b)
+    {
+      const Point centre = rigid_bodies.centre(b);
+      for (const RigidBodies::Node &node : rigid_bodies.nodes(b))
+      {
+        Vector3 arm = node.X - centre, force;
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          arm[c] += u(node.dof + c);
+          force[c] = internal(node.dof + c) - external(node.dof + c);
+        }
+        const double k = model_.stabilisation->resistance(layout.owned[0].index_within_set(node.dof));
+        if (force == Vector3() && k == 0.)
+          continue;
+        const Vector3 moment = dealii::cross_product_3d(arm, force);
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          residual.rigid[n_components * b + c] += force[c];
+          residual.rigid[n_components * b + dim + c] += moment[c];
+          system.border_rhs[n_components * b + c] -= force[c];
+          system.border_rhs[n_components * b + dim + c] -= moment[c];
+        }
+        add_turn(layout, b, arm, force, system.border);
+        const auto add_row = [&](const DoFIndex row, const double row_part, const unsigned int c)
+        {
+          surfaces.for_each_rigid_unknown(b,
+                                          c,
+                                          1.,
+                                          arm,
+                                          [&](const DoFIndex column, const double part)
+                                          { system.border.add(row, column, k * row_part * part); });
+        };
+        for (unsigned int c = 0; c < dim && k > 0.; ++c)
+          surfaces.for_each_rigid_unknown(
+              b, c, 1., arm, [&](const DoFIndex row, const double part) { add_row(row, part, c); });
+      }
+    }
+  }
+
+  /// Viscous forces on the nodes of driven rigid bodies, which the bulk takes for prescribed ones.
+  void DrivenRigidBodies::add_drag(const Vector &moved, Vector &drag) const
+  {
+    const RigidBodies     &rigid_bodies = model_.rigid_bodies;
+    const ContactSurfaces &surfaces     = model_.contact->surfaces();
+    for (unsigned int b = 0; b < rigid_bodies.size(); ++b)
+      for (const RigidBodies::Node &node : rigid_bodies.nodes(b))
+      {
+        const double k = model_.stabilisation->resistance(surfaces.layout().owned[0].index_within_set(node.dof));
+        for (unsigned int c = 0; c < dim; ++c)
+          drag(node.dof + c) = -k * moved(node.dof + c);
+      }
+    drag.compress(dealii::VectorOperation::insert);
+  }
+
+  /// Equilibrium of the driven rigid bodies, and what their prescribed components still lack.
+  void DrivenRigidBodies::add_to(LinearSystem         &system,
+                                 const Vector         &internal,
+                                 const Vector         &external,
+                                 const double          force_scale,
+                                 const double          length,
+                                 NewtonProblem::Norms &norms)
+  {
+    const RigidBodies &rigid_bodies = model_.rigid_bodies;
+    add_nodes(system, internal, external);
+    const std::vector<double> &rigid = model_.contact->residual().rigid;
+    std::vector<double>        sum(rigid.size());
+    dealii::Utilities::MPI::sum(rigid, model_.communicator, sum);
+    applied_.resize(rigid_bodies.size());
+    for (unsigned int b = 0; b < rigid_bodies.size(); ++b)
+    {
+      std::copy_n(sum.begin() + n_components * b, n_components, applied_[b].begin());
+      const RigidBodies::Components &load = rigid_bodies.load(b), missing = rigid_bodies.missing(b);
+      double                         scale = force_scale, worst = 0.;
+      for (unsigned int c = 0; c < n_components; ++c)
+      {
+        const double lever = c < dim ? 1. : rigid_bodies.extent(b);
+        scale              = std::max({scale, std::abs(load[c]) / lever, std::abs(applied_[b][c]) / lever});
+        if (rigid_bodies.is_free(b, c))
+          worst = std::max(worst, std::abs(applied_[b][c] - load[c]) / lever);
+        norms.prescribed = std::max(norms.prescribed, std::abs(missing[c]) * lever / length);
+      }
+      norms.force = std::max(norms.force, scale > 0. ? worst / scale : 0.);
+    }
+  }
+
+  DrivenRigidBodies::Equations DrivenRigidBodies::equations(const LinearSystem &system) const
+  {
+    const RigidBodies  &rigid_bodies = model_.rigid_bodies;
+    const unsigned int  n            = n_components * rigid_bodies.size();
+    std::vector<double> sum(n);
+    Equations           e{dealii::FullMatrix<double>(n, n),
+                dealii::Vector<double>(n),
+                dealii::Vector<double>(n),
+                dealii::Vector<double>(n),
+                {}};
+    dealii::Utilities::MPI::sum(system.border_rhs, model_.communicator, sum);
+    for (unsigned int i = 0; i < rigid_bodies.size(); ++i)
+    {
+      const auto spin    = rigid_bodies.spin(i);
+      const auto missing = rigid_bodies.missing(i);
+      for (unsigned int c = 0; c < n_components; ++c)
+      {
+        const unsigned int first = n_components * i;
+        e.force(first + c)       = sum[first + c] + rigid_bodies.load(i)[c];
+        e.scale(first + c)       = c < dim ? 1. : 1. / rigid_bodies.extent(i);
+        for (unsigned int d = 0; d < n_components; ++d)
+          e.components(first + d, first + c) = c < dim || d < dim ? (c == d ? 1. : 0.) : spin[d - dim][c - dim];
+        for (unsigned int d = 0; d < n_components; ++d)
+          e.given(first + d) += e.components(first + d, first + c) * missing[c];
+        if (rigid_bodies.is_free(i, c))
+          e.rows.push_back(first + c);
+      }
+    }
+    return e;
+  }
+
+  LinearSolver::Report DrivenRigidBodies::solve(const LinearSystem &system,
+                                                RescuedSolver      &solver,
+                                                const double        relative_tolerance,
+                                                BlockVector        &correction,
+                                                std::string        &free)
+  {
+    const RigidBodies         &rigid_bodies = model_.rigid_bodies;
+    const unsigned int         n            = n_components * rigid_bodies.size();
+    const Equations            e            = equations(system);
+    dealii::FullMatrix<double> P(n, e.rows.size());
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < e.rows.size(); ++j)
+        P(i, j) = e.components(i, e.rows[j]);
+    BorderedSystem bordered(system);
+    bordered.eliminate([&](const std::vector<const BlockVector *> &rhs, std::vector<BlockVector> &x)
+                       { return solver.solve(system, rhs, x, std::min(relative_tolerance, response_tolerance)); },
+                       P,
+                       e.given,
+                       e.rows,
+                       e.force);
+    if (!bordered.report().null_pivots.empty())
+      return bordered.report();
+    const bool                   direct = solver.type() == LinearSolverParameters::Type::direct;
+    const dealii::Vector<double> y =
+        resolve(bordered, e, direct ? free_fraction_direct : free_fraction_iterative, free);
+    if (!free.empty())
+      return bordered.report();
+    bordered.expand(y, correction);
+
+    correction_.assign(n, 0.);
+    for (unsigned int i = 0; i < rigid_bodies.size(); ++i)
+    {
+      const auto missing = rigid_bodies.missing(i);
+      std::copy(missing.begin(), missing.end(), correction_.begin() + n_components * i);
+    }
+    for (unsigned int i = 0; i < e.rows.size(); ++i)
+      correction_[e.rows[i]] = y(i);
+    return bordered.report();
+  }
+
+  dealii::Vector<double> DrivenRigidBodies::resolve(const BorderedSystem &bordered,
+                                                    const Equations      &e,
+                                                    const double          free_fraction,
+                                                    std::string          &free)
+  {
+    const auto                      &rows  = e.rows;
+    const auto                      &scale = e.scale;
+    dealii::LAPACKFullMatrix<double> S(rows.size());
+    dealii::Vector<double>           y(rows.size());
+    for (unsigned int i = 0; i < rows.size(); ++i)
+      for (unsigned int j = 0; j < rows.size(); ++j)
+        S(i, j) = scale(rows[i]) * bordered.schur_complement()(i, j) * scale(rows[j]);
+    S.compute_svd();
+    const double largest = std::max(S.singular_value(0), states_.now.stiffness_scale);
+    const double least   = largest * free_fraction;
+    double       forces  = 0.; // of all motions, as a scale
+    bool         waits   = false;
+    const auto   u = S.get_svd_u(), vt = S.get_svd_vt();
+    for (const unsigned int row : rows)
+      forces += std::abs(scale(row) * e.force(row));
+    for (unsigned int k = 0; k < rows.size(); ++k)
+    {
+      double force = 0.;
+      for (unsigned int i = 0; i < rows.size(); ++i)
+        force += u(i, k) * scale(rows[i]) * bordered.rhs()(i);
+      if (S.singular_value(k) > least)
+      {
+        for (unsigned int j = 0; j < rows.size(); ++j)
+          y(j) += vt(k, j) * scale(rows[j]) * force / S.singular_value(k);
+        continue;
+      }
+      if (!may_wait_for_friction(forces > 0. ? std::abs(force) / forces : 0.))
+      {
+        std::vector<double> motion(e.force.size(), 0.);
+        for (unsigned int j = 0; j < rows.size(); ++j)
+          motion[rows[j]] = vt(k, j) * scale(rows[j]);
+        free = describe(motion);
+        return y;
+      }
+      waits = true;
+    }
+    waits_ += waits;
+    return y;
+  }
+
+  /// There is friction, but no pressure yet that it is in proportion to: what only friction resists may rest in the
+  /// first correction, and as long as the relative @p force on it is nothing. Collective.
+  bool DrivenRigidBodies::may_wait_for_friction(const double force) const
+  {
+    const ContactSurfaces &surfaces = model_.contact->surfaces();
+    const Status          &status   = model_.contact->status();
+    if (!status.has_friction())
+      return false;
+    bool acts = false;
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+      acts = acts || (surfaces.is_owned(s) && status.friction(s));
+    return dealii::Utilities::MPI::max(acts ? 1 : 0, model_.communicator) == 0 &&
+           (waits_ == 0 || force <= negligible_force);
+  }
+
+  /// "rigid body 2 (punch) moves along (1 0 0)": six components of each.
+  std::string DrivenRigidBodies::describe(const std::vector<double> &motion) const
+  {
+    const RigidBodies &rigid_bodies = model_.rigid_bodies;
+    const auto         lever        = [&](const unsigned int i)
+    { return i % n_components < dim ? 1. : rigid_bodies.extent(i / n_components); };
+    double largest = 0.;
+    for (unsigned int i = 0; i < motion.size(); ++i)
+      largest = std::max(largest, std::abs(motion[i]) * lever(i));
+    std::string text;
+    for (unsigned int b = 0; b < rigid_bodies.size(); ++b)
+    {
+      Vector3 part[2]; // translation and rotation, without round-off
+      for (unsigned int c = 0; c < n_components; ++c)
+        if (const unsigned int i = n_components * b + c; std::abs(motion[i]) * lever(i) > round_off * largest)
+          part[c / dim][c % dim] = motion[i];
+      if (part[0].norm() + part[1].norm() == 0.)
+        continue;
+      text += (text.empty() ? "" : ", together with ") + std::string("rigid body ") +
+              std::to_string(rigid_bodies.body(b) + 1) + " (" + rigid_bodies.name(b) + ")";
+      if (part[0].norm() > 0.)
+        text += " moves along " + text_of(part[0] / part[0].norm());
+      if (part[1].norm() > 0.)
+        text += std::string(part[0].norm() > 0. ? " and" : "") + " turns about " + text_of(part[1] / part[1].norm()) +
+                " through " + text_of(rigid_bodies.centre(b));
+    }
+    return text;
+  }
+} // namespace Nodus

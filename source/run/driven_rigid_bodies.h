@@ -1,0 +1,83 @@
+#ifndef nodus_run_driven_rigid_bodies_h
+#define nodus_run_driven_rigid_bodies_h
+
+#include "run/model.h"
+#include "solve/bordered_system.h"
+#include "solve/newton.h"
+#include "solve/rescued_solver.h"
+
+#include <string>
+#include <vector>
+
+namespace Nodus
+{
+  /// Rigid bodies that forces and moments drive: their equilibrium, and their part in the correction.
+  class DrivenRigidBodies
+  {
+  public:
+    /// Both outlive it.
+    DrivenRigidBodies(const Model &model, const States &states);
+
+    void begin_loops()
+    {
+      waits_ = 0;
+    }
+
+    /// Viscous forces on their nodes against @p moved, which the bulk takes for prescribed ones.
+    void add_drag(const Vector &moved, Vector &drag) const;
+
+    /// Adds the forces at their nodes to the border of @p system and to the residual of contact, and to @p norms how
+    /// far they are from equilibrium and what their prescribed components still lack. @p force_scale of the nodes, @p
+    /// length of the increment. Collective.
+    void add_to(LinearSystem         &system,
+                const Vector         &internal,
+                const Vector         &external,
+                double                force_scale,
+                double                length,
+                NewtonProblem::Norms &norms);
+
+    /// The correction of all unknowns; that of the bodies is kept for correction(). @p free: a motion that nothing
+    /// resists, then there is none.
+    LinearSolver::Report solve(const LinearSystem &system,
+                               RescuedSolver      &solver,
+                               double              relative_tolerance,
+                               BlockVector        &correction,
+                               std::string        &free);
+
+    /// Six components of each body.
+    const std::vector<double> &correction() const
+    {
+      return correction_;
+    }
+    /// Forces and moments that act on them, all ranks.
+    const std::vector<RigidBodies::Components> &applied() const
+    {
+      return applied_;
+    }
+
+  private:
+    /// The equations of a correction, six per body: the components that are free, and what the others still lack.
+    struct Equations
+    {
+      dealii::FullMatrix<double> components;   ///< increments of the unknowns as motions
+      dealii::Vector<double>     given;        ///< motion of the prescribed components
+      dealii::Vector<double>     force, scale; ///< scale: for components in units of length
+      std::vector<unsigned int>  rows;         ///< free components
+    };
+    Equations equations(const LinearSystem &system) const;
+    /// The free components of the correction; motions whose stiffness is below @p free_fraction are free.
+    dealii::Vector<double>
+         resolve(const BorderedSystem &bordered, const Equations &equations, double free_fraction, std::string &free);
+    void add_nodes(LinearSystem &system, const Vector &internal, const Vector &external);
+    bool may_wait_for_friction(double force) const;
+    std::string describe(const std::vector<double> &motion) const;
+
+    const Model                         &model_;
+    const States                        &states_;
+    std::vector<double>                  correction_;
+    unsigned int                         waits_ = 0; ///< corrections in which some wait for friction
+    std::vector<RigidBodies::Components> applied_;
+  };
+} // namespace Nodus
+
+#endif

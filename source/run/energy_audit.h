@@ -1,0 +1,39 @@
+#ifndef nodus_run_energy_audit_h
+#define nodus_run_energy_audit_h
+
+#include "run/equilibrium.h"
+
+#include <vector>
+
+namespace Nodus
+{
+  /// Takes account of the energies of an increment, and warns where they do not balance.
+  class EnergyAudit
+  {
+  public:
+    /// All outlive it.
+    EnergyAudit(const Model &model, Journal &journal, States &states, const Equilibrium &equilibrium);
+
+    /// The increment has converged and its materials are committed; displacements, forces and jumps that it started
+    /// from are those of the committed state. Adds its energies to those of the state at hand. Collective.
+    void account();
+
+  private:
+    /// What contact does at this rank's sites: work of rigid masters and of the normal forces, and dissipation.
+    struct ContactWork
+    {
+      double                    masters = 0., normal = 0., friction = 0.;
+      std::vector<unsigned int> creating; ///< sites where friction created energy
+    };
+    ContactWork contact_work() const;
+    double      negligible_dissipation() const;
+    void        warn(const Energies &increment, const std::vector<unsigned int> &creating) const;
+
+    const Model       &model_;
+    Journal           &journal_;
+    States            &states_;
+    const Equilibrium &equilibrium_;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,361 @@
+#include "run/equilibrium.h"
+#include "contact/unconstrained_modes.h"
+#include "mesh/sides.h"
+#include "parallel/owned_values.h"
+#include "run/free_motions.h"
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+#include <utility>
+
+namespace Nodus
+{
+  namespace
+  {
+    /// Forces below this fraction of stiffness times displacement are not resolved to the tolerance of Newton (1e-8).
+    constexpr double relative_force_floor = 1e-5;
+    /// Relative force residual up to which an iterate right after a prescribed motion has all its statuses tested.
+    constexpr double settled_force = 1e-3;
+  } // namespace
+
+  std::string MergedLoops::names() const
+  {
+    std::string text;
+    for (const auto &[name, is_merged] :
+         {std::make_pair("geometry", geometry), {"threshold", threshold}, {"status", status}})
+      if (is_merged)
+        text += (text.empty() ? "" : ", ") + std::string(name);
+    return text;
+  }
+
+  Equilibrium::Equilibrium(Model &model, Journal &journal, States &states)
+      : model_(model)
+      , journal_(journal)
+      , states_(states)
+      , driven_(model, states)
+  {
+  }
+
+  void Equilibrium::begin_on_mesh()
+  {
+    const BlockLayout &layout = model_.contact->surfaces().layout();
+    system_.layout            = &layout;
+    layout.reinit(system_.rhs);
+    u_.reinit(layout.owned[0], model_.relevant, model_.communicator);
+    for (Vector *v : {&forces_.internal,
+                      &forces_.external,
+                      &forces_.contact,
+                      &forces_.drag,
+                      &forces_.released,
+                      &forces_.out_of_balance})
+      v->reinit(layout.owned[0], model_.communicator);
+    model_.solid->make_sparsity(system_.bulk);
+    LinearSolverParameters parameters = model_.parameters.linear_solver;
+    parameters.type                   = chosen_solver(model_.parameters, model_.dof_handler.n_dofs());
+    solver_                           = std::make_unique<RescuedSolver>(parameters,
+                                              layout,
+                                              OwnedNodes(model_.dof_handler, *model_.mapping).X,
+                                              journal_.profile,
+                                              [this](const std::string &text) { journal_.console.remark(text); });
+  }
+
+  void Equilibrium::begin_increment(const Increment &increment)
+  {
+    increment_ = increment;
+    model_.impose(increment);
+    forces_.drag = 0.;
+    motions_unknown_ =
+        !increment.on_new_mesh() && increment.begins_interval() && model_.contact->surfaces().n_pairs() > 0;
+    // Where a displacement was prescribed until the interval began, the force that held it goes to zero in its course.
+    const auto  &constraints = model_.boundary_conditions->homogeneous_constraints();
+    const double rest        = increment.left_to_release(increment.end);
+    for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
+      forces_.released(i) = constraints.is_constrained(i) ? 0. : rest * states_.now.reaction(i);
+    forces_.released.compress(dealii::VectorOperation::insert);
+    solver_->begin_increment();
+  }
+
+  void Equilibrium::begin_attempt(const MergedLoops &merged)
+  {
+    merged_   = merged;
+    singular_ = false;
+    model_.contact->begin_attempt();
+  }
+
+  void Equilibrium::begin_loops()
+  {
+    driven_.begin_loops();
+  }
+
+  void Equilibrium::pair()
+  {
+    const auto timer = journal_.profile.time(Phase::pairing);
+    model_.contact->pair(states_.now.unknowns, states_.committed.unknowns.block(0));
+  }
+
+  double Equilibrium::evaluate(const bool measure)
+  {
+    const Vector &u = states_.now.unknowns.block(0);
+    u_              = u;
+    constraints_    = &model_.boundary_conditions->increment_constraints(u_);
+    {
+      const auto timer = journal_.profile.time(Phase::bulk_assembly);
+      Vector    &rhs   = system_.rhs.block(0);
+      model_.solid->tangent(u_, increment_.end, *constraints_, system_.bulk, rhs, forces_.internal, forces_.external);
+      forces_.external += forces_.released;
+      rhs += forces_.released;
+      if (model_.stabilisation->acts())
+      {
+        Vector moved(u);
+        moved -= states_.committed.unknowns.block(0);
+        forces_.drag = 0.;
+        model_.stabilisation->add(moved, *constraints_, system_.bulk, forces_.drag);
+        driven_.add_drag(moved, forces_.drag);
+        forces_.external += forces_.drag;
+        rhs += forces_.drag;
+      }
+      bulk_rhs_ = rhs;
+    }
+    if (!measure)
+      return 0.;
+    model_.contact->gather(states_.now.unknowns, states_.committed.unknowns.block(0));
+    return assemble_contact().force;
+  }
+
+  NewtonProblem::Norms Equilibrium::accept(const unsigned int iteration)
+  {
+    const bool        first   = iteration == 0;
+    const Vector     &start   = states_.committed.unknowns.block(0);
+    ContactInterface &contact = *model_.contact;
+    if (merged_.geometry && !first)
+      pair();
+    {
+      const auto timer = journal_.profile.time(Phase::contact_assembly);
+      contact.gather(states_.now.unknowns, start);
+    }
+    if (merged_.threshold)
+    {
+      const auto timer = journal_.profile.time(Phase::status);
+      contact.follow_pressure(increment_.duration(), states_.now.unknowns, start);
+    }
+    Norms norms = assemble_contact();
+    if (std::exchange(motions_unknown_, false))
+      warn_of_free_motions();
+    // Newton starts with the statuses that it inherits. Where prescribed displacements have just moved the boundary and
+    // left the bulk out of balance, gaps count but pressures do not.
+    const bool moved = std::exchange(prescribed_before_, norms.prescribed) > model_.parameters.newton.contact_tolerance;
+    const bool unsettled = !first && moved && norms.force > settled_force;
+    if (merged_.status && (!first || Newton(model_.parameters.newton).converged(norms)))
+      if (const unsigned int changes = update_statuses(unsettled).changes; changes > 0)
+      {
+        norms         = assemble_contact();
+        norms.changes = changes;
+      }
+    if (merged_.geometry)
+    {
+      const auto timer = journal_.profile.time(Phase::contact_assembly);
+      contact.add_geometry_tangent(system_);
+    }
+    return norms;
+  }
+
+  /// Contact terms of the system at the trial, and the norms of its residual.
+  NewtonProblem::Norms Equilibrium::assemble_contact()
+  {
+    const auto  timer = journal_.profile.time(Phase::contact_assembly);
+    Norms       norms;
+    const auto &owned = model_.contact->surfaces().layout().owned[0];
+    Vector      prescribed(forces_.contact); // its map: a new one would be collective
+    prescribed = 0.;
+    const OwnedValues given(prescribed);
+    for (const auto i : owned)
+      if (constraints_->is_constrained(i))
+        given(i) = constraints_->get_inhomogeneity(i);
+    model_.contact->set_prescribed(prescribed);
+
+    system_.rhs.block(0) = bulk_rhs_;
+    model_.contact->assemble(system_, merged_.threshold);
+    forces_.contact = 0.;
+    model_.contact->add_forces(forces_.contact);
+
+    Vector moved(states_.now.unknowns.block(0));
+    moved -= states_.committed.unknowns.block(0);
+    const double length          = std::max(moved.linfty_norm(), model_.length_scale);
+    double      &stiffness_scale = states_.now.stiffness_scale;
+    if (stiffness_scale == 0.)
+      stiffness_scale = system_.bulk.largest_diagonal();
+    // The last term is round-off: without it a body that only translates would be measured against its own noise.
+    const double      scale = std::max({forces_.internal.linfty_norm(),
+                                        forces_.external.linfty_norm(),
+                                        forces_.contact.linfty_norm(),
+                                        relative_force_floor * stiffness_scale * length});
+    const OwnedValues out(forces_.out_of_balance), in(forces_.internal), ex(forces_.external), on(forces_.contact);
+    for (const auto i : owned)
+      out(i) = constraints_->is_constrained(i) ? 0. : in(i)-ex(i) + on(i);
+    forces_.scale    = scale;
+    norms.force      = scale > 0. ? forces_.out_of_balance.linfty_norm() / scale : 0.;
+    norms.contact    = model_.contact->norm(length);
+    norms.prescribed = prescribed.linfty_norm() / length;
+    driven_.add_to(system_, forces_.internal, forces_.external, scale, length, norms);
+    return norms;
+  }
+
+  unsigned int Equilibrium::solve(BlockVector &correction, const double relative_tolerance)
+  {
+    const auto timer = journal_.profile.time(Phase::solver_iterations);
+    iterate_         = states_.now.unknowns;
+    rigid_iterate_   = states_.now.rigid;
+    LinearSolver::Report report;
+    if (model_.rigid_bodies.size() == 0)
+      report = solver_->solve(system_, correction, relative_tolerance);
+    else
+    {
+      std::string free;
+      report    = driven_.solve(system_, *solver_, relative_tolerance, correction, free);
+      singular_ = singular_ || !free.empty();
+      if (!free.empty())
+        throw SolverFailure("the system is singular: " + free + ", and nothing resists it; " +
+                                ways_to_hold("take components out of 'Rigid free'"),
+                            SolverFailure::Kind::free_body);
+    }
+    const BlockLayout &layout = model_.contact->surfaces().layout();
+    if (!report.null_pivots.empty())
+    {
+      null_pivot_ = report.null_pivots.front();
+      singular_   = null_pivot_ < layout.n_u;
+      throw SolverFailure("the system is singular (" + std::to_string(report.null_pivots.size()) +
+                              " null pivots), first at " + unknown_locus(null_pivot_),
+                          singular_ ? SolverFailure::Kind::free_body : SolverFailure::Kind::over_constraint);
+    }
+    const long surplus = report.negative_pivots - 3 * static_cast<long>(layout.n_slave_nodes);
+    if (report.negative_pivots >= 0 && surplus != 0)
+      journal_.console.remark("the tangent has " + std::to_string(std::abs(surplus)) + " negative eigenvalues " +
+                              (surplus > 0 ? "more" : "less") + " than multipliers: the state is not stable");
+    // The solver leaves prescribed components alone: they take what the constraints still ask for.
+    constraints_->distribute(correction.block(0));
+    return report.iterations;
+  }
+
+  void Equilibrium::move(const double factor, const BlockVector &correction)
+  {
+    states_.now.unknowns = iterate_;
+    states_.now.rigid    = rigid_iterate_;
+    states_.now.unknowns.add(factor, correction);
+    model_.rigid_bodies.advance(factor, driven_.correction());
+    model_.rigid_bodies.move(states_.now.unknowns.block(0));
+  }
+
+  Equilibrium::StatusChanges Equilibrium::update_statuses(const bool closing_only)
+  {
+    const auto           timer   = journal_.profile.time(Phase::status);
+    ContactInterface    &contact = *model_.contact;
+    const Status::Update update  = contact.update_statuses(closing_only);
+    std::vector<char>    statuses(contact.status().size());
+    for (unsigned int s = 0; s < statuses.size(); ++s)
+      statuses[s] = static_cast<char>(contact.status().status(s));
+    journal_.diagnosis.add_statuses(statuses);
+    StatusChanges result{update.changes, update.frozen, ""};
+    if (update.changes == 0)
+      return result;
+    const std::vector<std::string> loci = contact.loci(update.sites, 3);
+    result.first                        = loci.front();
+    journal_.console.remark(std::to_string(update.changes) + " statuses changed, first at " + result.first);
+    if (update.cycles)
+      throw SolverFailure("the statuses cycle; the nodes that change back and forth: " + cycling_,
+                          SolverFailure::Kind::status_cycle);
+    if (update.to_regularised)
+    {
+      journal_.console.remark("the statuses cycle: from here the laws are regularised (multipliers projected at "
+                              "integration points, weights lumped)");
+      contact.pass_to_regularised_law(states_.now.unknowns, states_.committed.unknowns.block(0));
+      ++journal_.counts.fallbacks;
+    }
+    else if (update.period > 0)
+    {
+      cycling_.clear();
+      for (const std::string &locus : loci)
+        cycling_ += (cycling_.empty() ? "" : "; ") + locus;
+      journal_.console.remark(
+          "these statuses were met " + std::to_string(update.period) +
+          (merged_.status ? " iterations ago" : " passes ago: from here one node changes at a time"));
+    }
+    return result;
+  }
+
+  Vector Equilibrium::applied_forces() const
+  {
+    const auto &constraints = model_.boundary_conditions->homogeneous_constraints();
+    Vector      applied(forces_.external);
+    applied -= forces_.drag;
+    for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
+      if (constraints.is_constrained(i))
+        applied(i) = forces_.internal(i) + forces_.contact(i);
+    for (unsigned int b = 0; b < model_.rigid_bodies.size(); ++b) // what drives these counts as force and moment
+      for (const RigidBodies::Node &node : model_.rigid_bodies.nodes(b))
+        for (unsigned int c = 0; c < dim; ++c)
+          applied(node.dof + c) = forces_.external(node.dof + c) - forces_.drag(node.dof + c);
+    applied.compress(dealii::VectorOperation::insert);
+    return applied;
+  }
+
+  Vector Equilibrium::reactions() const
+  {
+    const auto &constraints = model_.boundary_conditions->homogeneous_constraints();
+    Vector      reactions(forces_.internal);
+    for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
+      reactions(i) =
+          constraints.is_constrained(i) ? forces_.internal(i) - forces_.external(i) + forces_.contact(i) : 0.;
+    reactions.compress(dealii::VectorOperation::insert);
+    return reactions;
+  }
+
+  /// Names the rigid motions that nothing holds as the increment begins: contact has to, or the system is singular.
+  void Equilibrium::warn_of_free_motions()
+  {
+    std::string text;
+    for (const auto &motion : free_motions(model_, states_.now, increment_.end))
+      text += (text.empty() ? "" : "; ") + motion.text;
+    const bool has_closed = model_.contact->n_closed() > 0;
+    if (!text.empty())
+      journal_.console.remark("nothing holds these motions as the increment begins: " + text +
+                              (model_.stabilisation->acts() ? "; viscous stabilisation does"
+                               : has_closed ? "; the closed contact does not, and no more may close in time"
+                                            : "; contact has to close at once"));
+  }
+
+  std::string Equilibrium::ways_to_hold(const std::string &first) const
+  {
+    return Nodus::ways_to_hold(model_, states_.now, increment_, first);
+  }
+
+  std::string Equilibrium::unknown_locus(const DoFIndex flat_index) const
+  {
+    const ContactSurfaces &surfaces = model_.contact->surfaces();
+    const BlockLayout     &layout   = surfaces.layout();
+    if (flat_index >= layout.lambda(0))
+    {
+      const bool     pressure   = flat_index < layout.Lambda(0, 0);
+      const DoFIndex multiplier = pressure ? flat_index - layout.lambda(0) : (flat_index - layout.Lambda(0, 0)) / 2;
+      unsigned int   here       = dealii::numbers::invalid_unsigned_int;
+      for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
+        if (surfaces.multiplier(k) == multiplier)
+          here = k;
+      return (pressure ? "the contact multiplier of " : "the friction multiplier of ") + model_.contact->locus(here) +
+             ": this constraint repeats another one (over-constraint)";
+    }
+    std::map<DoFIndex, Point> points;
+    dealii::DoFTools::map_dofs_to_support_points(*model_.mapping, model_.dof_handler, points);
+    const auto  owner = points.find(flat_index);
+    std::string here =
+        owner == points.end() || !layout.owned[0].is_element(flat_index) ? "" : coordinates(owner->second);
+    for (const auto &part : dealii::Utilities::MPI::all_gather(model_.communicator, here))
+      if (!part.empty())
+        here = part;
+    return "the displacement of node " + here + ": its body is free to move; " +
+           ways_to_hold("hold it with a boundary condition (a soft spring will do)");
+  }
+} // namespace Nodus

@@ -1,0 +1,146 @@
+#ifndef nodus_run_equilibrium_h
+#define nodus_run_equilibrium_h
+
+#include "contact/status.h"
+#include "run/driven_rigid_bodies.h"
+#include "run/journal.h"
+#include "run/load_stepping.h"
+#include "run/model.h"
+#include "solve/newton.h"
+#include "solve/rescued_solver.h"
+
+#include <memory>
+#include <string>
+
+namespace Nodus
+{
+  /// Which of the three nested loops are part of Newton's iteration.
+  struct MergedLoops
+  {
+    bool geometry = false, threshold = false, status = false;
+    bool any() const
+    {
+      return geometry || threshold || status;
+    }
+    /// "geometry, status" and the like, empty for none.
+    std::string names() const;
+  };
+
+  /// Nodal forces at the trial that was evaluated last, fully distributed.
+  struct NodalForces
+  {
+    Vector internal;
+    Vector external; ///< loads, what is being released, and drag
+    Vector contact;
+    Vector drag;           ///< of viscous stabilisation
+    Vector released;       ///< what is left of reactions where nothing is prescribed any more
+    Vector out_of_balance; ///< the sum, zero where prescribed
+    double scale = 0.;     ///< that they are relative to in the norms
+  };
+
+  /// Equilibrium of all bodies at the end of an increment, as Newton sees it: residual, tangent and correction.
+  /// evaluate() and accept() follow the state at hand; pairing, thresholds and statuses move in accept() alone, where
+  /// their loops are merged.
+  class Equilibrium : public NewtonProblem
+  {
+  public:
+    /// All outlive it.
+    Equilibrium(Model &model, Journal &journal, States &states);
+
+    /// What the solution on the mesh as it is needs: sparsity, solver, vectors.
+    void begin_on_mesh();
+    /// The conditions of @p increment: prescribed displacements, loads, rigid motions, what is released.
+    void begin_increment(const Increment &increment);
+    /// An attempt at it that starts from the state at hand.
+    void begin_attempt(const MergedLoops &merged);
+    /// The loops around Newton begin (anew).
+    void begin_loops();
+
+    double       evaluate(bool measure) override;
+    Norms        accept(unsigned int iteration) override;
+    unsigned int solve(BlockVector &correction, double relative_tolerance) override;
+    void         move(double factor, const BlockVector &correction) override;
+
+    /// A geometry pass at the state at hand.
+    void pair();
+    /// Tests and changes statuses, and says so. @throws SolverFailure where they cycle.
+    struct StatusChanges
+    {
+      unsigned int changes = 0, frozen = 0; ///< on all ranks
+      std::string  first;                   ///< where the first one is
+    };
+    StatusChanges update_statuses(bool closing_only = false);
+    /// Sites that took part in the last cycle.
+    const std::string &cycling() const
+    {
+      return cycling_;
+    }
+
+    const Increment &increment() const
+    {
+      return increment_;
+    }
+    const MergedLoops &merged() const
+    {
+      return merged_;
+    }
+    const NodalForces &forces() const
+    {
+      return forces_;
+    }
+    const DrivenRigidBodies &driven() const
+    {
+      return driven_;
+    }
+    LinearSystem &system()
+    {
+      return system_;
+    }
+    LinearSolverParameters::Type solver_type() const
+    {
+      return solver_->type();
+    }
+    /// A system of this attempt leaves bodies free; the flat index of the last null pivot.
+    bool singular() const
+    {
+      return singular_;
+    }
+    DoFIndex null_pivot() const
+    {
+      return null_pivot_;
+    }
+
+    /// Loads, released reactions and reactions: all forces on the bodies but those of contact.
+    Vector applied_forces() const;
+    /// Forces that hold what is prescribed, zero elsewhere.
+    Vector reactions() const;
+
+  private:
+    Norms       assemble_contact();
+    void        warn_of_free_motions();
+    std::string unknown_locus(DoFIndex flat_index) const;
+    std::string ways_to_hold(const std::string &first) const;
+
+    Model                                   &model_;
+    Journal                                 &journal_;
+    States                                  &states_;
+    std::unique_ptr<RescuedSolver>           solver_;
+    DrivenRigidBodies                        driven_;
+    LinearSystem                             system_;
+    NodalForces                              forces_;
+    Vector                                   u_;                     ///< displacements with ghosts, of the trial
+    Vector                                   bulk_rhs_;              ///< right-hand side before contact
+    const dealii::AffineConstraints<double> *constraints_ = nullptr; ///< of the trial
+    BlockVector                              iterate_;               ///< that the correction starts from
+    std::vector<RigidBodies::State>          rigid_iterate_;
+    Increment                                increment_;
+    MergedLoops                              merged_;
+    std::string                              cycling_;
+    DoFIndex                                 null_pivot_        = dealii::numbers::invalid_dof_index;
+    bool                                     singular_          = false;
+    bool                                     motions_unknown_   = false; ///< an interval begins
+    double                                   prescribed_before_ = 0.; ///< still to be met at the last iterate, relative
+  };
+} // namespace Nodus
+
+#endif

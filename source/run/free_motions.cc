@@ -1,0 +1,120 @@
+#include "run/free_motions.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+namespace Nodus
+{
+  namespace
+  {
+    /// Stiffness of the springs that are proposed, relative to the modulus of the body over its size.
+    constexpr double soft = 1e-3;
+  } // namespace
+
+  std::vector<UnconstrainedModes::Motion>
+  free_motions(const Model &model, const State &state, const double time, const bool as_closed)
+  {
+    const OwnedNodes   nodes(model.dof_handler, *model.mapping);
+    UnconstrainedModes motions(
+        model.bodies, model.dof_handler, *model.mapping, model.rigid_bodies, nodes, state.unknowns.block(0));
+    motions.hold_prescribed(model.boundary_conditions->homogeneous_constraints());
+    motions.hold_springs(model.parameters.boundary_conditions, time);
+    model.contact->hold(motions, as_closed);
+    return motions.free();
+  }
+
+  std::string ways_to_hold(const Model &model, const State &state, const Increment &increment, const std::string &first)
+  {
+    const ContactSurfaces &surfaces = model.contact->surfaces();
+    const Status          &status   = model.contact->status();
+    const std::size_t      now      = free_motions(model, state, increment.end).size();
+    const std::size_t      left     = free_motions(model, state, increment.end, true).size();
+    const bool             start    = increment.number == 1; // 'Initial status' is that of the start
+    std::ostringstream     text;
+    text << first;
+    if (start && left == 0 && now > 0)
+      text << ", close the contact first ('Initial status = closed')";
+    text << ", or set 'Load stepping/Viscous stabilisation = 1e-2'";
+    if (start && 0 < left && left < now)
+      text << "; 'Initial status = closed' alone would still leave " << left << " of " << now << " motions free";
+
+    bool rubs = false, is_closed = false;
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+      if (surfaces.is_owned(s) && surfaces.has_status(s) && status.contact(s))
+      {
+        const auto &pair = model.parameters.contact_pairs[surfaces.pair(s)];
+        is_closed        = true;
+        rubs             = rubs || pair.friction_coefficient > 0. || pair.shear_limit > 0.;
+      }
+    is_closed = dealii::Utilities::MPI::logical_or(is_closed, model.communicator);
+    rubs      = dealii::Utilities::MPI::logical_or(rubs, model.communicator);
+    if (is_closed)
+      text << "; contact is closed, but "
+           << (!rubs   ? "has no friction"
+               : start ? "friction holds nothing before there is pressure"
+                       : "friction is at its limit, or does not act in this direction");
+    return text.str();
+  }
+
+  std::vector<FailureEvidence::Spring> proposed_springs(const Model &model, const State &state, const double time)
+  {
+    std::vector<FailureEvidence::Spring> springs;
+    std::vector<std::array<bool, dim>>   moves(model.bodies.size(), {{false, false, false}});
+    for (const auto &motion : free_motions(model, state, time))
+      for (unsigned int b = 0; b < model.bodies.size(); ++b)
+        for (unsigned int c = 0; c < dim; ++c)
+          moves[b][c] = moves[b][c] || motion.moves[b][c];
+    for (unsigned int b = 0; b < model.bodies.size(); ++b)
+    {
+      if (model.parameters.bodies[b].rigid || moves[b] == std::array<bool, dim>{{false, false, false}})
+        continue;
+      const auto ids     = model.bodies.boundary_ids(b);
+      const auto touches = [&](const unsigned int id)
+      {
+        const auto &pairs = model.parameters.contact_pairs;
+        return std::any_of(pairs.begin(),
+                           pairs.end(),
+                           [&](const ContactPairParameters &pair)
+                           {
+                             const auto has = [&](const RegionParameters &side)
+                             {
+                               return side.body == b + 1 &&
+                                      std::find(side.boundary_ids.begin(), side.boundary_ids.end(), id) !=
+                                          side.boundary_ids.end();
+                             };
+                             return has(pair.slave) || has(pair.master);
+                           });
+      };
+      const auto id   = std::find_if_not(ids.begin(), ids.end(), touches);
+      const auto ends = model.bodies.bounding_box(b).get_boundary_points();
+      springs.push_back({b,
+                         static_cast<unsigned int>(id == ids.end() ? *ids.begin() : *id),
+                         moves[b],
+                         soft * model.materials[b]->youngs_modulus() / ends.first.distance(ends.second)});
+    }
+    return springs;
+  }
+
+  void check_stabilised_motion(const Model &model, const States &states)
+  {
+    const ContactSurfaces &surfaces = model.contact->surfaces();
+    if (!model.stabilisation->acts() || surfaces.n_pairs() == 0)
+      return;
+    double limit = std::numeric_limits<double>::max();
+    for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
+      limit = std::min(limit, 0.5 * surfaces.face_size(p));
+    std::string  worst;
+    const double moved =
+        model.contact->largest_difference(states.now.unknowns.block(0), states.committed.unknowns.block(0), &worst);
+    if (moved <= limit)
+      return;
+    std::ostringstream message;
+    message << "the node " << worst << " moves by " << moved
+            << " against viscous stabilisation, more than half of a slave face (" << limit
+            << "); raise 'Load stepping/Viscous stabilisation'";
+    throw SolverFailure(message.str(), SolverFailure::Kind::free_body);
+  }
+} // namespace Nodus

@@ -1,0 +1,48 @@
+#ifndef nodus_run_increment_loops_h
+#define nodus_run_increment_loops_h
+
+#include "run/equilibrium.h"
+#include "run/fixed_point_loop.h"
+#include "solve/anderson_mixing.h"
+#include "solve/secant_acceleration.h"
+
+#include <functional>
+
+namespace Nodus
+{
+  /// The three nested fixed-point loops of an increment around Newton: geometry, friction thresholds, statuses. Those
+  /// that are merged into Newton's iteration are passed through once.
+  class IncrementLoops
+  {
+  public:
+    /// All outlive it. @p heed_signals is called in every Newton iteration, and may throw.
+    IncrementLoops(
+        Model &model, Journal &journal, States &states, Equilibrium &equilibrium, std::function<void()> heed_signals);
+
+    /// Solves from the state at hand, with the loops merged as Equilibrium::begin_attempt() said. @p first_iterate: the
+    /// solution is not that of the increment (friction continuation), one geometry pass will do. @throws SolverFailure
+    void solve(bool first_iterate = false);
+
+  private:
+    void pair();
+    void iterate(const Newton &newton);
+    /// @p once: further passes are of no use.
+    bool geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing, bool once);
+    bool threshold_converged(FixedPointLoop &loop, SecantAcceleration &secant);
+    bool statuses_converged(FixedPointLoop &loop);
+    void check_frozen_statuses();
+    void start_half_way();
+    void note_pass(const FixedPointLoop &loop, double value, const std::string &worst);
+
+    Model                          &model_;
+    Journal                        &journal_;
+    States                         &states_;
+    Equilibrium                    &equilibrium_;
+    std::function<void()>           heed_signals_;
+    Vector                          paired_, paired_before_; ///< displacements of this and the previous pairing
+    std::vector<RigidBodies::State> rigid_paired_;           ///< at this pairing
+    unsigned int                    geometry_cycles_ = 0;    ///< with period 2, in the geometry loop at hand
+  };
+} // namespace Nodus
+
+#endif

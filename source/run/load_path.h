@@ -1,0 +1,59 @@
+#ifndef nodus_run_load_path_h
+#define nodus_run_load_path_h
+
+#include "run/checkpointing.h"
+#include "run/energy_audit.h"
+#include "run/failure_report.h"
+#include "run/load_stepping.h"
+#include "run/mesh_adaptation.h"
+#include "run/results.h"
+#include "run/strategy.h"
+
+#include <functional>
+
+namespace Nodus
+{
+  /// The objects that a load path is followed with.
+  struct RunParts
+  {
+    Model          &model;
+    Journal        &journal;
+    States         &states;
+    Equilibrium    &equilibrium;
+    Strategy       &strategy;
+    Results        &results;
+    MeshAdaptation &adaptation;
+    Checkpointing  &checkpointing;
+    LoadStepping   &path;
+  };
+
+  /// Increment after increment; one that fails is tried again in halves, from exactly the state before.
+  class LoadPath
+  {
+  public:
+    explicit LoadPath(const RunParts &parts);
+
+    /// To the end of the path. @p callback: after each converged increment, with its number and time. @throws
+    /// SolverFailure, Interrupted
+    void follow(const std::function<void(unsigned int, double)> &callback);
+
+  private:
+    bool              solve();
+    void              finish(const std::function<void(unsigned int, double)> &callback);
+    void              commit();
+    void              restore_equilibrium();
+    void              warn_of_lost_partners() const;
+    void              warn_of_open_pairs() const;
+    void              report_stabilisation() const;
+    void              say_what_changed(const std::vector<ContactResultants> &before) const;
+    [[noreturn]] void give_up(const std::string &reason, const std::string &hint, bool may_shrink);
+
+    RunParts          parts_;
+    EnergyAudit       audit_;
+    unsigned int      first_;                ///< increment of this run
+    std::vector<bool> never_closed_;         ///< by pair
+    unsigned int      mesh_repetitions_ = 0; ///< of the increment at hand on a finer mesh
+  };
+} // namespace Nodus
+
+#endif

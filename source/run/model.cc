@@ -1,0 +1,168 @@
+#include "run/model.h"
+#include "bulk/rigid_material.h"
+#include "mesh/sides.h"
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_q.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace Nodus
+{
+  namespace
+  {
+    std::vector<std::unique_ptr<Material>> make_materials(const std::vector<BodyParameters> &bodies)
+    {
+      std::vector<std::unique_ptr<Material>> materials;
+      double                                 stiffest = 0.; // with its modulus a rigid body changes no scale
+      for (const auto &body : bodies)
+      {
+        materials.push_back(body.rigid ? nullptr : make_material(body.material));
+        if (!body.rigid)
+          stiffest = std::max(stiffest, materials.back()->youngs_modulus());
+      }
+      for (auto &material : materials)
+        if (!material)
+          material = std::make_unique<RigidMaterial>(stiffest);
+      return materials;
+    }
+
+    bool refines(const AdaptivityParameters &adaptivity)
+    {
+      return adaptivity.interval > 0 || adaptivity.initial_cycles > 0 || adaptivity.repetitions > 0;
+    }
+
+    std::vector<RegionParameters> slaves(const std::vector<ContactPairParameters> &pairs)
+    {
+      std::vector<RegionParameters> result;
+      for (const auto &pair : pairs)
+        result.push_back(pair.slave);
+      return result;
+    }
+  } // namespace
+
+  Model::Model(const Parameters &p, MPI_Comm comm, States &states)
+      : parameters(p)
+      , communicator(comm)
+      , bodies(parameters.bodies, comm, refines(parameters.adaptivity), slaves(parameters.contact_pairs))
+      , mapping(bodies.make_mapping(parameters.degree))
+      , fe(dealii::FE_Q<dim>(parameters.degree), dim)
+      , dof_handler(bodies.triangulation())
+      , materials(make_materials(parameters.bodies))
+      , rigid_bodies(parameters.bodies, bodies, states.now.rigid)
+  {
+    if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 && !parameters.contact_pairs.empty())
+      balance_contact(parameters.contact_pairs, *mapping, bodies);
+    set_up_mesh(states.now);
+    states.committed = states.now;
+  }
+
+  void Model::set_up_mesh(State &now)
+  {
+    dof_handler.distribute_dofs(fe);
+    relevant.clear();
+    dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+    boundary_conditions = std::make_unique<BoundaryConditions>(parameters.boundary_conditions,
+                                                               bodies,
+                                                               dof_handler,
+                                                               *mapping,
+                                                               parameters.load_stepping.interval_ends,
+                                                               parameters.bodies);
+    std::vector<BodyParameters::VolumetricTreatment> treatments;
+    for (const auto &body : parameters.bodies)
+      treatments.push_back(body.rigid ? BodyParameters::VolumetricTreatment::standard : body.volumetric_treatment);
+    solid =
+        std::make_unique<SolidAssembler>(dof_handler, *mapping, materials, boundary_conditions->loads(), treatments);
+    stabilisation = std::make_unique<ViscousStabilisation>(
+        parameters.load_stepping.viscous_stabilisation, bodies, materials, dof_handler, *mapping);
+    contact.reset(); // what it refers to is made anew
+    rigid_bodies.find_nodes(dof_handler, *mapping);
+    contact = std::make_unique<ContactInterface>(
+        parameters.contact_pairs, pair_stiffness(), bodies, dof_handler, *mapping, rigid_bodies, now.contact);
+    contact->surfaces().set_fixed(boundary_conditions->homogeneous_constraints());
+
+    const BlockLayout &layout = contact->surfaces().layout();
+    layout.reinit(now.unknowns);
+    now.reaction.reinit(layout.owned[0], communicator);
+    now.applied.reinit(layout.owned[0], communicator);
+    now.history = solid->start();
+
+    length_scale = 0.;
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+    {
+      const auto ends = bodies.bounding_box(b).get_boundary_points();
+      length_scale    = std::max(length_scale, 1e-6 * ends.first.distance(ends.second));
+    }
+    contact->gather(now.unknowns, now.unknowns.block(0));
+  }
+
+  void Model::impose(const Increment &increment)
+  {
+    if (boundary_conditions->set_time(increment.end))
+      contact->surfaces().set_fixed(boundary_conditions->homogeneous_constraints());
+    const double first_interval = parameters.load_stepping.interval_ends.front();
+    contact->begin_increment(increment.begin, increment.end, std::min(1., increment.end / first_interval));
+    rigid_bodies.set_time(increment.end);
+    stabilisation->set_increment(increment.begin, increment.end, increment.interval_begin, increment.interval_end);
+  }
+
+  void Model::return_to(const State &state, States &states)
+  {
+    states.now = state;
+    contact->resume(states.now.unknowns, states.committed.unknowns.block(0));
+  }
+
+  void Model::roll_back(States &states)
+  {
+    return_to(states.committed, states);
+    solid->start_from(states.now.history);
+  }
+
+  std::vector<double> Model::pair_stiffness() const
+  {
+    std::vector<double> stiffness;
+    for (const auto &pair : parameters.contact_pairs)
+    {
+      stiffness.push_back(materials[pair.slave.body - 1]->youngs_modulus());
+      if (!pair.has_rigid_master())
+        stiffness.back() = std::min(stiffness.back(), materials[pair.master.body - 1]->youngs_modulus());
+    }
+    return stiffness;
+  }
+
+  Vector Model::with_ghosts(const Vector &v) const
+  {
+    Vector ghosted(contact->surfaces().layout().owned[0], relevant, communicator);
+    ghosted = v;
+    return ghosted;
+  }
+
+  std::vector<std::string> Model::summary() const
+  {
+    const ContactSurfaces   &surfaces = contact->surfaces();
+    std::vector<std::string> lines;
+    std::ostringstream       text;
+    text << (parameters.title.empty() ? "nodus" : parameters.title) << ": " << bodies.size()
+         << (bodies.size() == 1 ? " body, " : " bodies, ") << bodies.triangulation().n_global_active_cells()
+         << " cells, " << dof_handler.n_dofs() << " displacement degrees of freedom (Q" << parameters.degree << "), "
+         << surfaces.layout().n_slave_nodes << " slave nodes, " << dealii::Utilities::MPI::n_mpi_processes(communicator)
+         << (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1 ? " process" : " processes");
+    lines.push_back(text.str());
+    for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
+    {
+      std::ostringstream line;
+      line << "  contact pair " << p + 1 << in_brackets(parameters.contact_pairs[p].name) << ": "
+           << surfaces.n_faces(p, slave_side) << " slave faces on ";
+      if (const auto &pair = parameters.contact_pairs[p]; pair.has_rigid_master())
+        line << "a rigid " << text_of(pair.master_surface.shape)
+             << (pair.has_carried_master() ? " of body " + std::to_string(pair.master.body) : "");
+      else
+        line << surfaces.n_faces(p, master_side) << " master faces";
+      line << ", mean slave face size " << surfaces.face_size(p);
+      lines.push_back(line.str());
+    }
+    return lines;
+  }
+} // namespace Nodus

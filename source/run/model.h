@@ -1,0 +1,64 @@
+#ifndef nodus_run_model_h
+#define nodus_run_model_h
+
+#include "bulk/boundary_conditions.h"
+#include "bulk/material.h"
+#include "bulk/solid_assembler.h"
+#include "bulk/viscous_stabilisation.h"
+#include "contact/contact_interface.h"
+#include "mesh/bodies.h"
+#include "rigid/rigid_bodies.h"
+#include "run/load_stepping.h"
+#include "run/state.h"
+#include <nodus/parameters/parameters.h>
+
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/mapping.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Nodus
+{
+  /// What is computed: bodies, mesh, degrees of freedom, materials, conditions and contact, without any algorithm.
+  struct Model
+  {
+    /// @p states outlive it; they are set to those at rest. Collective. @throws InputError
+    Model(const Parameters &parameters, MPI_Comm communicator, States &states);
+
+    /// All that is made for the mesh as it is. The state at hand is at rest then, but for what does not depend on the
+    /// mesh: rigid bodies, energies.
+    void set_up_mesh(State &now);
+    /// The conditions of @p increment: prescribed displacements, loads, rigid motions, stabilisation. Collective.
+    void impose(const Increment &increment);
+    /// @p states: the state at hand becomes @p state, one of the same mesh. What refers to it follows. Collective.
+    void return_to(const State &state, States &states);
+    /// The state at hand becomes the one that the increment began with. Collective.
+    void roll_back(States &states);
+
+    /// Young's modulus of the softer side of each pair.
+    std::vector<double> pair_stiffness() const;
+    /// A copy of a fully distributed vector of displacements with ghost entries. Collective.
+    Vector with_ghosts(const Vector &v) const;
+    /// "3 bodies, 120 cells, ...", and a line for each contact pair.
+    std::vector<std::string> summary() const;
+
+    const Parameters                           &parameters;
+    MPI_Comm                                    communicator;
+    Bodies                                      bodies;
+    std::unique_ptr<const dealii::Mapping<dim>> mapping;
+    dealii::FESystem<dim>                       fe;
+    dealii::DoFHandler<dim>                     dof_handler;
+    dealii::IndexSet                            relevant;
+    std::vector<std::unique_ptr<Material>>      materials;
+    RigidBodies                                 rigid_bodies; ///< those that forces drive
+    std::unique_ptr<BoundaryConditions>         boundary_conditions;
+    std::unique_ptr<SolidAssembler>             solid;
+    std::unique_ptr<ViscousStabilisation>       stabilisation;
+    std::unique_ptr<ContactInterface>           contact;
+    double length_scale = 0.; ///< displacements are measured against this when the step moves nothing [length]
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,500 @@
+#include "run/state_vectors.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+#include <boost/serialization/vector.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+namespace Nodus
+{
+  namespace
+  {
+    // Values as numbers: how many, to them, from them.
+    constexpr unsigned int width(const char *)
+    {
+      return 1;
+    }
+    constexpr unsigned int width(const double *)
+    {
+      return 1;
+    }
+    constexpr unsigned int width(const std::array<double, 2> *)
+    {
+      return 2;
+    }
+    constexpr unsigned int width(const Vector3 *)
+    {
+      return dim;
+    }
+    constexpr unsigned int width(const std::array<Vector3, 2> *)
+    {
+      return 2 * dim;
+    }
+
+    double *write(const char value, double *to)
+    {
+      *to = value;
+      return to + 1;
+    }
+    double *write(const double value, double *to)
+    {
+      *to = value;
+      return to + 1;
+    }
+    double *write(const std::array<double, 2> &value, double *to)
+    {
+      return std::copy(value.begin(), value.end(), to);
+    }
+    double *write(const Vector3 &value, double *to)
+    {
+      return std::copy(value.begin_raw(), value.end_raw(), to);
+    }
+    double *write(const std::array<Vector3, 2> &value, double *to)
+    {
+      return write(value[1], write(value[0], to));
+    }
+
+    const double *read(const double *from, char &value)
+    {
+      value = *from > 0.5; // or between those of others, on a new mesh
+      return from + 1;
+    }
+    const double *read(const double *from, double &value)
+    {
+      value = *from;
+      return from + 1;
+    }
+    const double *read(const double *from, std::array<double, 2> &value)
+    {
+      std::copy_n(from, 2, value.begin());
+      return from + 2;
+    }
+    const double *read(const double *from, Vector3 &value)
+    {
+      std::copy_n(from, dim, value.begin_raw());
+      return from + dim;
+    }
+    const double *read(const double *from, std::array<Vector3, 2> &value)
+    {
+      return read(read(from, value[0]), value[1]);
+    }
+
+    /// Visits nothing; what a visitor below does visit hides these.
+    struct Nothing
+    {
+      template <typename... Arguments>
+      void nodes(Arguments &&...)
+      {
+      }
+      template <typename... Arguments>
+      void multipliers(Arguments &&...)
+      {
+      }
+      template <typename... Arguments>
+      void slaves(Arguments &&...)
+      {
+      }
+      template <typename... Arguments>
+      void sites(Arguments &&...)
+      {
+      }
+      template <typename... Arguments>
+      void cells(Arguments &&...)
+      {
+      }
+      template <typename... Arguments>
+      void common(Arguments &&...)
+      {
+      }
+    };
+
+    struct Widths : public Nothing
+    {
+      unsigned int site = 0, slave = 0;
+
+      template <typename T>
+      void sites(const std::vector<T> &)
+      {
+        site += width(static_cast<const T *>(nullptr));
+      }
+      template <typename T>
+      void slaves(const std::vector<T> &)
+      {
+        slave += width(static_cast<const T *>(nullptr));
+      }
+      void multipliers(const Vector &, const unsigned int n)
+      {
+        slave += n;
+      }
+    };
+    const Widths &widths()
+    {
+      static const Widths counted = []
+      {
+        State  any;
+        Widths w;
+        any.unknowns.reinit(3);
+        visit_members(any, w);
+        return w;
+      }();
+      return counted;
+    }
+
+    struct SiteWriter : public Nothing
+    {
+      unsigned int site;
+      double      *to;
+      template <typename T>
+      void sites(const std::vector<T> &values)
+      {
+        to = write(values[site], to);
+      }
+    };
+    struct SiteReader : public Nothing
+    {
+      unsigned int  site;
+      const double *from;
+      template <typename T>
+      void sites(std::vector<T> &values)
+      {
+        from = read(from, values[site]);
+      }
+    };
+    struct SlaveWriter : public Nothing
+    {
+      unsigned int slave;
+      DoFIndex     multiplier;
+      double      *to;
+      void         multipliers(const Vector &values, const unsigned int n)
+      {
+        for (unsigned int i = 0; i < n; ++i)
+          *to++ = values(n * multiplier + i);
+      }
+      template <typename T>
+      void slaves(const std::vector<T> &values)
+      {
+        to = write(values[slave], to);
+      }
+    };
+    struct SlaveReader : public Nothing
+    {
+      unsigned int  slave;
+      DoFIndex      multiplier;
+      const double *from;
+      void          multipliers(Vector &values, const unsigned int n)
+      {
+        for (unsigned int i = 0; i < n; ++i)
+          values(n * multiplier + i) = *from++;
+      }
+      template <typename T>
+      void slaves(std::vector<T> &values)
+      {
+        from = read(from, values[slave]);
+      }
+    };
+    struct NodeVectors : public Nothing
+    {
+      std::vector<const Vector *> vectors;
+      void                        nodes(const Vector &v)
+      {
+        vectors.push_back(&v);
+      }
+    };
+    struct NodeVectorReader : public Nothing
+    {
+      const Vector *from;
+      void          nodes(Vector &v)
+      {
+        v = *from++;
+      }
+    };
+
+    struct Places : public Nothing
+    {
+      const void  *wanted;
+      unsigned int next = 0, found = 0;
+      template <typename T>
+      void sites(const std::vector<T> &values)
+      {
+        if (&values == wanted)
+          found = next;
+        next += width(static_cast<const T *>(nullptr));
+      }
+    };
+    /// Where a member begins among the values of a site.
+    template <typename T>
+    unsigned int place_of(const std::vector<T> &member, const State &state)
+    {
+      Places places;
+      places.wanted = &member;
+      visit_members(state, places);
+      return places.found;
+    }
+
+    /// Numbers of a slave node: those of its site, its own, and Lambda in space where they are to be interpolated.
+    unsigned int n_slave_numbers()
+    {
+      return n_site_values() + widths().slave + dim;
+    }
+
+    /// The vectors of a state whose slave nodes have the numbers that @p numbers(k) returns.
+    template <typename Numbers>
+    std::vector<Vector> as_vectors(const State &state, const ContactInterface &contact, const Numbers &numbers)
+    {
+      const ContactSurfaces &surfaces = contact.surfaces();
+      NodeVectors            of_nodes;
+      visit_members(state, of_nodes);
+      std::vector<Vector> vectors;
+      for (const Vector *const v : of_nodes.vectors)
+        vectors.push_back(*v);
+      while (vectors.size() < n_state_vectors())
+        vectors.emplace_back(surfaces.layout().owned[0], surfaces.layout().communicator);
+      for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
+      {
+        const std::vector<double> values = numbers(k);
+        for (unsigned int i = 0; i < values.size(); ++i)
+          vectors[n_displacement_vectors + i / dim](surfaces.nodes()[k].dofs[i % dim]) = values[i];
+      }
+      for (unsigned int n = n_displacement_vectors; n < vectors.size(); ++n)
+        vectors[n].compress(dealii::VectorOperation::insert);
+      return vectors;
+    }
+
+    /// Numbers of an own slave node among the vectors.
+    std::vector<double>
+    numbers_of(const std::vector<Vector> &vectors, const ContactSurfaces &surfaces, const unsigned int k)
+    {
+      std::vector<double> values(n_slave_numbers());
+      for (unsigned int i = 0; i < values.size(); ++i)
+        values[i] = vectors[n_displacement_vectors + i / dim](surfaces.nodes()[k].dofs[i % dim]);
+      return values;
+    }
+
+    void write_slave(const State &state, const ContactSurfaces &surfaces, const unsigned int k, double *const to)
+    {
+      SlaveWriter writer{{}, k, surfaces.multiplier(k), to};
+      visit_members(state, writer);
+    }
+
+    void set_sites(std::vector<double> sites, const ContactSurfaces &surfaces, State &state)
+    {
+      surfaces.site_exchange().update(sites, n_site_values());
+      for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+      {
+        SiteReader reader{{}, s, sites.data() + s * n_site_values()};
+        visit_members(state, reader);
+      }
+    }
+
+    void set_nodes(const std::vector<Vector> &vectors, State &state)
+    {
+      NodeVectorReader reader{{}, vectors.data()};
+      visit_members(state, reader);
+    }
+
+    /// Site values of the slave nodes; those of the integration point scheme have the mean of the points around them.
+    /// Right at own nodes. Collective.
+    std::vector<double> node_values(const State &state, const ContactInterface &contact)
+    {
+      const ContactSurfaces &surfaces = contact.surfaces();
+      const unsigned int     n = n_site_values(), n_slaves = surfaces.slave_nodes().size();
+      std::vector<double>    values(n * n_slaves, 0.), sums((n + 1) * n_slaves, 0.);
+      const unsigned int     rank = dealii::Utilities::MPI::this_mpi_process(surfaces.layout().communicator);
+      for (const ContactPoint &point : contact.weights().points())
+        if (point.site != dealii::numbers::invalid_unsigned_int && point.owner == rank)
+        {
+          const std::vector<double> here = site_values(state, point.site);
+          for (unsigned int a = 0; a < point.slaves.size(); ++a)
+          {
+            double *const sum  = sums.data() + (n + 1) * point.slaves[a];
+            const double  part = point.weight * std::abs(point.shape[a]);
+            for (unsigned int i = 0; i < n; ++i)
+              sum[i] += part * here[i];
+            sum[n] += part;
+          }
+        }
+      surfaces.slave_exchange().sum(sums, n + 1);
+      for (unsigned int k = 0; k < n_slaves; ++k)
+        if (surfaces.has_status(k))
+        {
+          const std::vector<double> own = site_values(state, k);
+          std::copy(own.begin(), own.end(), values.begin() + n * k);
+        }
+        else if (const double *const sum = sums.data() + (n + 1) * k; sum[n] > 0.)
+          for (unsigned int i = 0; i < n; ++i)
+            values[n * k + i] = sum[i] / sum[n];
+      return values;
+    }
+
+    /// Site values of all sites on a new mesh: those of slave nodes from @p vectors, those of integration points
+    /// interpolated between them.
+    std::vector<double> interpolated_sites(const std::vector<Vector> &vectors, const ContactSurfaces &surfaces)
+    {
+      const unsigned int  n = n_site_values(), n_slaves = surfaces.slave_nodes().size();
+      std::vector<double> nodes(n * n_slaves, 0.);
+      for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
+        std::copy_n(numbers_of(vectors, surfaces, k).begin(), n, nodes.begin() + n * k);
+      surfaces.slave_exchange().update(nodes, n);
+      std::vector<double> sites(n * surfaces.n_sites(), 0.);
+      for (unsigned int k = 0; k < n_slaves; ++k)
+        if (surfaces.has_status(k)) // otherwise the points take it over
+          std::copy_n(nodes.begin() + n * k, n, sites.begin() + n * k);
+      for (unsigned int s = n_slaves; s < surfaces.n_sites(); ++s)
+      {
+        const SlavePoint  &point = surfaces.point(s);
+        const SurfaceFace &face  = surfaces.slave_faces(point.pair)[point.face];
+        const auto         shape = face.slave_values(FaceShape(surfaces.degree(), point.xi, point.eta).value);
+        for (unsigned int a = 0; a < face.slaves.size(); ++a)
+          for (unsigned int i = 0; i < n; ++i)
+            sites[n * s + i] += shape[a] * nodes[n * face.slaves[a] + i];
+      }
+      return sites;
+    }
+
+    /// Reads or writes what all ranks share.
+    template <typename Archive>
+    struct CommonArchive : public Nothing
+    {
+      Archive &archive;
+      template <typename T>
+      void common(T &member)
+      {
+        archive &member;
+      }
+    };
+  } // namespace
+
+  unsigned int n_site_values()
+  {
+    return widths().site;
+  }
+
+  unsigned int n_state_vectors()
+  {
+    return n_displacement_vectors + (n_slave_numbers() + dim - 1) / dim;
+  }
+
+  std::vector<double> site_values(const State &state, const unsigned int site)
+  {
+    std::vector<double> values(n_site_values());
+    SiteWriter          writer{{}, site, values.data()};
+    visit_members(state, writer);
+    return values;
+  }
+
+  std::vector<Vector> exact_vectors(const State &state, const ContactInterface &contact)
+  {
+    return as_vectors(state,
+                      contact,
+                      [&](const unsigned int k)
+                      {
+                        std::vector<double> values = site_values(state, k);
+                        values.resize(n_slave_numbers(), 0.);
+                        write_slave(state, contact.surfaces(), k, values.data() + n_site_values());
+                        return values;
+                      });
+  }
+
+  void take_exact(const std::vector<Vector> &vectors,
+                  std::vector<double>        sites,
+                  const ContactInterface    &contact,
+                  State                     &state)
+  {
+    const ContactSurfaces &surfaces = contact.surfaces();
+    set_nodes(vectors, state);
+    for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
+    {
+      const std::vector<double> values = numbers_of(vectors, surfaces, k);
+      std::copy_n(values.begin(), n_site_values(), sites.begin() + n_site_values() * k);
+      SlaveReader reader{{}, k, surfaces.multiplier(k), values.data() + n_site_values()};
+      visit_members(state, reader);
+    }
+    for (unsigned int b = 1; b < 3; ++b)
+      state.unknowns.block(b).compress(dealii::VectorOperation::insert);
+    set_sites(std::move(sites), surfaces, state);
+  }
+
+  std::vector<Vector> interpolable_vectors(const State &state, const ContactInterface &contact)
+  {
+    const ContactSurfaces    &surfaces = contact.surfaces();
+    const unsigned int        n        = n_site_values();
+    const std::vector<double> means    = node_values(state, contact);
+    return as_vectors(state,
+                      contact,
+                      [&](const unsigned int k)
+                      {
+                        std::vector<double> values(n_slave_numbers(), 0.);
+                        std::copy_n(means.begin() + n * k, n, values.begin());
+                        write_slave(state, surfaces, k, values.data() + n);
+                        Vector3 Lambda;
+                        for (unsigned int i = 0; i < 2; ++i)
+                          Lambda +=
+                              state.unknowns.block(2)(2 * surfaces.multiplier(k) + i) * state.contact.tangents[k][i];
+                        write(Lambda, values.data() + n + widths().slave);
+                        return values;
+                      });
+  }
+
+  void take_interpolated(const std::vector<Vector> &vectors, const ContactInterface &contact, State &state)
+  {
+    const ContactSurfaces    &surfaces = contact.surfaces();
+    const unsigned int        n        = n_site_values();
+    const std::vector<double> sites    = interpolated_sites(vectors, surfaces);
+    take_exact(vectors, sites, contact, state);
+    set_sites(sites, surfaces, state); // those without status stay empty
+
+    Vector &Lambda = state.unknowns.block(2);
+    for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
+    {
+      const std::vector<double> numbers  = numbers_of(vectors, surfaces, k);
+      std::array<Vector3, 2>   &tangents = state.contact.tangents[k];
+      Vector3                   in_space;
+      read(numbers.data() + n + widths().slave, in_space);
+      for (unsigned int i = 0; i < 2; ++i)
+      {
+        if (i == 1) // the tangents lie between those of other nodes
+          tangents[1] -= (tangents[1] * tangents[0]) * tangents[0];
+        if (const double norm = tangents[i].norm(); norm > 0.)
+          tangents[i] /= norm;
+        Lambda(2 * surfaces.multiplier(k) + i) = in_space * tangents[i];
+      }
+    }
+    Lambda.compress(dealii::VectorOperation::insert);
+
+    InterfaceState &interface = state.contact;
+    interface.area.assign(interface.area.size(), 0.);
+    interface.on_new_mesh     = true;
+    const unsigned int closed = place_of(interface.statuses.contact, state);
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s) // between closed ones alone, which have a partner
+      interface.stuck[s] = std::abs(sites[n * s + closed] - 1.) < 1e-6;
+  }
+
+  std::vector<char> pack_common(const State &state)
+  {
+    std::ostringstream                             stream(std::ios::binary);
+    boost::archive::binary_oarchive                archive(stream);
+    CommonArchive<boost::archive::binary_oarchive> writer{{}, archive};
+    visit_members(state, writer);
+    const std::string bytes = stream.str();
+    return {bytes.begin(), bytes.end()};
+  }
+
+  void unpack_common(const std::vector<char> &bytes, State &state)
+  {
+    std::istringstream                             stream(std::string(bytes.begin(), bytes.end()), std::ios::binary);
+    boost::archive::binary_iarchive                archive(stream);
+    CommonArchive<boost::archive::binary_iarchive> reader{{}, archive};
+    visit_members(state, reader);
+  }
+
+  void copy_common(const State &from, State &to)
+  {
+    unpack_common(pack_common(from), to);
+  }
+} // namespace Nodus

@@ -1,0 +1,108 @@
+#include "run/strategy.h"
+#include "run/friction_continuation.h"
+
+#include <deal.II/base/mpi.h>
+
+// What is tried where something fails, outermost first. Each row has a case that fails without it; the numbers are in
+// contrib/doc/architecture.md.
+//
+// | level        | what is tried                                | where                                       |
+// |--------------|----------------------------------------------|---------------------------------------------|
+// | increment    | halves                                       | LoadPath (LoadStepping::cut_back)           |
+// | increment    | the attempts of the ladder below             | Strategy::ladder                            |
+// | attempt      | friction grows from nothing                  | continue_in_friction                        |
+// | geometry     | mixing of passes; half-way with rigid bodies | IncrementLoops::geometry_converged          |
+// | thresholds   | secant steps                                 | SecantAcceleration                          |
+// | statuses     | regularised law; one at a time; frozen       | Status::update                              |
+// | Newton       | halved step into inverted cells, line search | Newton::take_step                           |
+// | linear solve | the direct solver                            | RescuedSolver                               |
+
+namespace Nodus
+{
+  Strategy::Strategy(Model &model, Journal &journal, States &states, Equilibrium &equilibrium, IncrementLoops &loops)
+      : model_(model)
+      , journal_(journal)
+      , states_(states)
+      , equilibrium_(equilibrium)
+      , loops_(loops)
+  {
+  }
+
+  std::vector<Strategy::Attempt> Strategy::ladder(const bool on_new_mesh) const
+  {
+    using Mode                      = LoopParameters::Mode;
+    const Parameters       &p       = model_.parameters;
+    const ContactInterface &contact = *model_.contact;
+    const MergedLoops       asked   = {p.geometry_loop.mode == Mode::newton,
+                                       p.threshold_loop.mode == Mode::newton && contact.has_friction(),
+                                       p.status_loop.mode == Mode::newton};
+    const MergedLoops       inner   = {false, asked.threshold, asked.status};
+    const MergedLoops       coupled = {false, true, false}, none;
+    const bool              slides  = contact.slides() && !on_new_mesh; // there friction has grown already
+    struct Rung
+    {
+      bool    answers;
+      Attempt attempt;
+    };
+    const Rung rungs[] = {
+        // answers                                        name                                merged   friction grows
+        {true, {"the loops as they are asked for", asked, false}},
+        {asked.geometry && inner.any(), {"a geometry loop", inner, false}},
+        {asked.status && slides, {"a geometry loop and growing friction", inner, true}},
+        {asked.status && asked.threshold, {"geometry and status loops", coupled, false}},
+        {asked.any(), {"three loops", none, false}},
+        {p.threshold_loop.mode != Mode::newton && contact.threshold_follows_pressure(),
+         {"the coupled threshold", coupled, false}},
+    };
+    std::vector<Attempt> attempts;
+    for (const Rung &rung : rungs)
+      if (rung.answers)
+        attempts.push_back(rung.attempt);
+    return attempts;
+  }
+
+  void Strategy::solve_increment()
+  {
+    journal_.counts                     = IterationCounts();
+    const std::vector<Attempt> attempts = ladder(equilibrium_.increment().on_new_mesh());
+    for (auto attempt = attempts.begin();; ++attempt)
+      try
+      {
+        run(*attempt);
+        return;
+      }
+      catch (const SolverFailure &failure)
+      {
+        // without contact all attempts have the same system
+        if (attempt + 1 == attempts.end() || (begins_singular() && model_.contact->n_closed() == 0))
+          throw;
+        journal_.console.remark((attempt->merged.any() ? "merged iteration given up: " : "three loops given up: ") +
+                                std::string(failure.what()) + "; again with " + attempt[1].name);
+        journal_.diagnosis.end_attempt(failure.what());
+        model_.roll_back(states_);
+        ++journal_.counts.fallbacks;
+      }
+  }
+
+  void Strategy::run(const Attempt &attempt)
+  {
+    equilibrium_.begin_attempt(attempt.merged);
+    journal_.diagnosis.begin_attempt(attempt.merged.names() + (attempt.friction_grows ? "; friction grows" : ""));
+    if (attempt.friction_grows)
+      continue_in_friction(model_, journal_, states_, loops_);
+    else
+      loops_.solve();
+  }
+
+  bool Strategy::begins_singular() const
+  {
+    if (!equilibrium_.singular() || journal_.counts.newton > 0)
+      return false;
+    const ContactSurfaces &surfaces = model_.contact->surfaces();
+    unsigned int           changed  = 0;
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+      changed += surfaces.is_owned(s) && surfaces.has_status(s) &&
+                 states_.committed.contact.statuses.contact[s] != states_.now.contact.statuses.contact[s];
+    return dealii::Utilities::MPI::sum(changed, model_.communicator) == 0;
+  }
+} // namespace Nodus

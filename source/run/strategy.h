@@ -1,0 +1,47 @@
+#ifndef nodus_run_strategy_h
+#define nodus_run_strategy_h
+
+#include "run/increment_loops.h"
+
+#include <vector>
+
+namespace Nodus
+{
+  /// The attempts at an increment, one after the other until one succeeds: which loops are merged into Newton's
+  /// iteration, and how it starts. Each starts from the state that the increment began with.
+  class Strategy
+  {
+  public:
+    /// All outlive it.
+    Strategy(Model &model, Journal &journal, States &states, Equilibrium &equilibrium, IncrementLoops &loops);
+
+    /// A rung of the ladder.
+    struct Attempt
+    {
+      const char *name;
+      MergedLoops merged;
+      bool        friction_grows; ///< it starts with the friction continuation
+    };
+    /// Those that answer the case at hand, in their order.
+    std::vector<Attempt> ladder(bool on_new_mesh) const;
+
+    /// Solves the increment that Equilibrium::begin_increment() was given. @throws SolverFailure of the last attempt,
+    /// whose state is still at hand.
+    void solve_increment();
+
+    /// No attempt came beyond its first system, which leaves bodies free, and that is the one of the last converged
+    /// state: all smaller increments begin with it, too. Collective.
+    bool begins_singular() const;
+
+  private:
+    void run(const Attempt &attempt);
+
+    Model          &model_;
+    Journal        &journal_;
+    States         &states_;
+    Equilibrium    &equilibrium_;
+    IncrementLoops &loops_;
+  };
+} // namespace Nodus
+
+#endif
