@@ -1,6 +1,6 @@
 // The contact tangent against central differences of the contact residual, 1e-6 relative, for every scheme and
 // weighting, Q1 and Q2 faces, faceted and smoothed, and all status combinations on non-matching, curved and rotated
-// surfaces; symmetry to 1e-12. The same of integration points that hold their laws in the mean.
+// surfaces; symmetry to 1e-12. The same of integration points whose laws are regularised.
 
 #include "../contact_fixture.h"
 
@@ -51,7 +51,7 @@ int main(int argc, char **argv)
                         {"averaged, face", Scheme::averaged, Weights::dual, face, faceted},
                         {"averaged, segment", Scheme::averaged, Weights::dual, segment, smoothed},
                         {"integration point", Scheme::integration_point, Weights::dual, face, smoothed},
-                        {"integration point in the mean", Scheme::integration_point, Weights::dual, face, smoothed}};
+                        {"integration point, regularised", Scheme::integration_point, Weights::dual, face, smoothed}};
 
   for (const unsigned int degree : {1u, 2u})
     for (const auto &[name, scheme, weighting, integration, surface] : kinds)
@@ -95,7 +95,7 @@ int main(int argc, char **argv)
         state.Lambda[k] = {{random(generator), random(generator)}};
       }
 
-      if (name == "integration point in the mean")
+      if (name == "integration point, regularised")
         fixture.status->regularise();
       fixture.assemble();
       const auto   K         = fixture.matrix();

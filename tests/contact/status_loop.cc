@@ -122,7 +122,7 @@ int main(int argc, char **argv)
   bool to_regularised = false;
   for (passes = 0; passes < 10 && !to_regularised; ++passes)
     to_regularised = mean.update(mean.contact(first) ? tension : penetration).to_regularised;
-  std::cout << "laws in the mean after " << passes << " passes: " << mean.projected(first) << std::endl;
+  std::cout << "laws regularised after " << passes << " passes: " << mean.projected(first) << std::endl;
   tension.pressure[first]  = 0.;
   tension.Lambda[first][0] = 0.;
   for (unsigned int s = first; s < mean.size(); ++s)

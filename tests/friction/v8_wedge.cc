@@ -1,6 +1,6 @@
 // A block is driven up a slope s = 0.115 under a guide: the narrower the slot, the larger the pressure, and the
 // friction threshold is a fixed point with factor -mu/s, which loops cannot find for mu > s unless they are accelerated
-// (theory section 5.4). Merged and as three loops: the guide carries V = H (1 - mu s)/(mu + s) by equilibrium.
+// (theory section 12). Merged and as three loops: the guide carries V = H (1 - mu s)/(mu + s) by equilibrium.
 
 #include "../cases.h"
 

@@ -1,5 +1,5 @@
 // Fixed points of linear maps x -> a + k x by crossed secants: one secant solves any factor k in its bounds, those that
-// a plain iteration cycles with (-1) or runs away from (-1.74, the wedge of theory section 5.4; 1.5) included; with two
+// a plain iteration cycles with (-1) or runs away from (-1.74, the wedge of theory section 12; 1.5) included; with two
 // factors the error still falls. Where a plain iteration contracts by 2 it is left alone.
 
 #include "solve/secant_acceleration.h"

@@ -1,8 +1,8 @@
 // Every member of a State is filled with random numbers and sent through roll-back, the way back of the friction
 // continuation, a checkpoint, and the transfer to another mesh (here: to the same one, with what it leaves out on
 // purpose: areas, reactions to be released, and which sites stick). Printed are how many numbers a state has on all
-// ranks, how many the scrambled one keeps by chance, and the largest difference that is left after each. A member that
-// visit_members() does not name does not compile; one that is not filled here does not, either.
+// ranks, and after each way the largest difference that is left and how many are the same. The members are listed here
+// once more, so that one which visit_members() does not visit is found; one that is not filled here does not compile.
 
 #include "../restart/sliding_block.h"
 
@@ -88,15 +88,7 @@ namespace
       v.compress(dealii::VectorOperation::insert);
     }
 
-    void nodes(Vector &v)
-    {
-      (*this)(v);
-    }
-    void multipliers(Vector &v, unsigned int)
-    {
-      (*this)(v);
-    }
-    /// Only owned slave nodes have values that are right.
+    /// Only owned slave nodes and sites have values that are right.
     template <typename T>
     void slaves(std::vector<T> &values)
     {
@@ -110,7 +102,7 @@ namespace
         if (model.contact->surfaces().is_owned(s))
           (*this)(values[s]);
     }
-    void cells(SolidAssembler::History &history)
+    void operator()(SolidAssembler::History &history)
     {
       model.solid->start_from(history);
       auto values = model.solid->history();
@@ -118,17 +110,45 @@ namespace
       model.solid->set_history(values);
       history = model.solid->start();
     }
-    template <typename T>
-    void common(T &value)
+    void operator()(Status::State &statuses)
     {
-      (*this)(value);
+      auto &[contact, stick, threshold, slip, adjustment, friction_factor] = statuses;
+      sites(contact);
+      sites(stick);
+      sites(threshold);
+      sites(slip);
+      sites(adjustment);
+      sites(friction_factor);
+    }
+    void operator()(InterfaceState &interface)
+    {
+      auto &[statuses, tangents, area, force, jump, on_new_mesh, stuck] = interface;
+      (*this)(statuses);
+      slaves(tangents);
+      slaves(area);
+      sites(force);
+      sites(jump);
+      (*this)(on_new_mesh);
+      sites(stuck);
+    }
+    void operator()(State &state)
+    {
+      auto &[unknowns, contact, rigid, history, reaction, applied, energies, stiffness_scale] = state;
+      for (unsigned int b = 0; b < unknowns.n_blocks(); ++b)
+        (*this)(unknowns.block(b));
+      (*this)(contact);
+      (*this)(rigid);
+      (*this)(history);
+      (*this)(reaction);
+      (*this)(applied);
+      (*this)(energies);
+      (*this)(stiffness_scale);
     }
   };
   template <typename Function>
   void for_each_number(const Model &model, State &state, const Function &f)
   {
-    EachNumber<Function> each{model, f};
-    visit_members(state, each);
+    EachNumber<Function>{model, f}(state);
   }
 
   std::vector<double> numbers(const Model &model, State state)
@@ -143,8 +163,7 @@ namespace
     std::mt19937                           generator(seed + dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD));
     std::uniform_real_distribution<double> random(0., 1.);
     for_each_number(model, state, [&](double &value) { value = random(generator); });
-    // what all ranks share
-    for_each_number(model, state, [](double &) {});
+    // the same on all ranks
     unpack_common(dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, pack_common(state)), state);
     for (auto &tangents : state.contact.tangents) // frames
     {
@@ -166,7 +185,7 @@ namespace
     difference = dealii::Utilities::MPI::max(difference, MPI_COMM_WORLD);
     equal      = dealii::Utilities::MPI::sum(equal, MPI_COMM_WORLD);
     if (root())
-      std::cout << "  " << what << ": largest difference " << (difference < 1e-13 ? 0. : difference) << ", equal "
+      std::cout << "  " << what << ": largest difference " << (difference < 1e-13 ? 0. : difference) << ", the same "
                 << equal << std::endl;
   }
 
@@ -201,7 +220,6 @@ namespace
     const State reached = states.now;
     states.committed    = states.now;
     scramble();
-    report("scrambled", numbers(model, states.now), expected);
     model.roll_back(states);
     report("roll-back", numbers(model, states.now), expected);
     scramble();
@@ -237,7 +255,14 @@ namespace
     states.now.contact.area        = states.committed.contact.area;
     states.now.contact.stuck       = states.committed.contact.stuck;
     states.now.contact.on_new_mesh = states.committed.contact.on_new_mesh;
-    report("transfer, the rest", numbers(model, states.now), expected);
+    // frames are made orthogonal anew: their last digits may differ
+    const std::vector<double> left       = numbers(model, states.now);
+    double                    difference = 0.;
+    for (unsigned int i = 0; i < expected.size(); ++i)
+      difference = std::max(difference, std::abs(left[i] - expected[i]));
+    difference = dealii::Utilities::MPI::max(difference, MPI_COMM_WORLD);
+    if (root() && scheme == ContactPairParameters::Scheme::averaged) // points get the means of the nodes
+      std::cout << "  transfer, the rest: largest difference " << (difference < 1e-13 ? 0. : difference) << std::endl;
   }
 } // namespace
 

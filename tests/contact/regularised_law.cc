@@ -1,4 +1,4 @@
-// Statuses that cycle because sites share multipliers: from there the laws hold in the mean, and the run finishes where
+// Statuses that cycle because sites share multipliers: from there the laws are regularised, and the run finishes where
 // no vector of statuses satisfies all sites. A block of 3x3 faces is dragged over 2x2 with friction 1.13 and lifts its
 // rear edge: consistent weights against dual ones, which have the same nodal areas.
 
