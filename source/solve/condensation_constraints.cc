@@ -78,11 +78,13 @@ namespace Nodus
       throw NotCondensable("the constraints of neighbouring slave nodes depend on each other");
     for (const auto &member : members)
       if (Row *const row = rows_[sites_[member.site].node].get())
+      {
         for (const auto &[node, block] : cluster_->substitution(member))
           if (node == member.node)
             row->own += block;
           else
             row->others.push_back({node, block});
+      }
   }
 
   Condensation::Matrix3 Condensation::stiffness_along_rows(const Site &site) const
