@@ -194,7 +194,7 @@ namespace Nodus
       const Point *const points = surface.shape_points(f);
       return FlatFace(surface.shape_degree(), plane, [&](const unsigned int n) { return points[n]; });
     }
-    FlatFace faceted_face(const SurfaceGeometry &surface, const unsigned int f, const Plane &plane)
+    FlatFace facet(const SurfaceGeometry &surface, const unsigned int f, const Plane &plane)
     {
       return FlatFace(
           surface.degree(), plane, [&](const unsigned int n) { return surface.positions()[surface.face(f).nodes[n]]; });
@@ -227,128 +227,24 @@ namespace Nodus
       return dealii::BoundingBox<dim>({low, high});
     }
 
-    /// Local coordinates of the centre of a cell.
-    struct CellCentre
+    /// What a master cell covers of a slave cell, which is @p window in the @p plane; no corners where that is next to
+    /// nothing or they do not face each other.
+    Polygon overlap(const Shadow          &window,
+                    const Plane           &plane,
+                    const double           cell_area,
+                    const SurfaceGeometry &master,
+                    const unsigned int     m,
+                    const unsigned int     master_cell)
     {
-      double xi, eta;
-
-      CellCentre(const unsigned int cell, const unsigned int degree)
-          : xi((cell % degree + 0.5) / degree)
-          , eta((cell / degree + 0.5) / degree)
-      {
-      }
-    };
-
-    /// A cell of a slave face, with the plane that overlaps are seen in.
-    struct SlaveCell
-    {
-      const SurfaceGeometry     &surface;
-      const unsigned int         face, cell;
-      const std::array<Point, 4> corner;
-      const Plane                plane;
-      const FlatFace             facet; ///< the whole face in the plane
-      const Shadow               window;
-      const double               area;
-
-      SlaveCell(const SurfaceGeometry &surface, const unsigned int f, const unsigned int cell)
-          : surface(surface)
-          , face(f)
-          , cell(cell)
-          , corner(cell_corners(surface, f, cell))
-          , plane(plane_through(corner, surface.face(f).orientation))
-          , facet(faceted_face(surface, f, plane))
-          , window(corner, plane)
-          , area(window.polygon.area())
-      {
-      }
-    };
-
-    /// What a master cell covers of a slave cell; no corners where that is next to nothing.
-    Polygon
-    overlap(const SlaveCell &slave, const SurfaceGeometry &master, const unsigned int m, const unsigned int master_cell)
-    {
-      const auto corner = cell_corners(master, m, master_cell);
-      if (cell_normal(corner, master.face(m).orientation) * slave.plane.normal > -facing_cosine)
+      const auto master_corner = cell_corners(master, m, master_cell);
+      if (cell_normal(master_corner, master.face(m).orientation) * plane.normal > -facing_cosine)
         return Polygon();
-      const Shadow shadow(corner, slave.plane);
-      if (shadow.apart(slave.window))
+      const Shadow shadow(master_corner, plane);
+      if (shadow.apart(window))
         return Polygon();
-      const Polygon polygon = clip(shadow.polygon, slave.window.polygon);
-      return polygon.n < 3 || polygon.area() < smallest_overlap * slave.area ? Polygon() : polygon;
+      const Polygon polygon = clip(shadow.polygon, window.polygon);
+      return polygon.n < 3 || polygon.area() < smallest_overlap * cell_area ? Polygon() : polygon;
     }
-
-    /// Integration points of a slave face, and the area in the planes of its cells that they stand for.
-    class Segments
-    {
-    public:
-      /// Clears @p points, which get those of the calls that follow.
-      Segments(const unsigned int degree, const double reach, std::vector<MortarPoint> &points)
-          : degree_(degree)
-          , reach_(reach)
-          , points_(points)
-      {
-        points_.clear();
-      }
-
-      /// Adds the points on an overlap, triangle by triangle. @returns false, and has no points any more, where the
-      /// slave face is folded over.
-      bool add(const SlaveCell       &slave,
-               const SurfaceGeometry &master,
-               const unsigned int     m,
-               const unsigned int     master_cell,
-               const Polygon         &polygon)
-      {
-        // the product of two shape functions has total degree 4 (Q1) or 8 (Q2)
-        static const dealii::Quadrature<2> rules[] = {dealii::QWitherdenVincentSimplex<2>(3, false),
-                                                      dealii::QWitherdenVincentSimplex<2>(5, false)};
-        const auto                        &rule    = rules[degree_ - 1];
-
-        const FlatFace   master_face = smooth_face(master, m, slave.plane);
-        const CellCentre master_centre(master_cell, degree_);
-        CellCentre       on_slave(slave.cell, degree_), on_master = master_centre; // each point starts from the last
-        for (unsigned int t = 2; t < polygon.n; ++t)
-        {
-          const auto   a = polygon.corner[t - 1] - polygon.corner[0], b = polygon.corner[t] - polygon.corner[0];
-          const double twice_area = cross(a, b);
-          for (unsigned int q = 0; q < rule.size(); ++q)
-          {
-            const Point2 p = polygon.corner[0] + rule.point(q)[0] * a + rule.point(q)[1] * b;
-            if (!slave.facet.invert(p, on_slave.xi, on_slave.eta))
-            {
-              points_.clear();
-              return false;
-            }
-            // the partner lies on the smoothed faces, straight across
-            const Point x = slave.surface.position(slave.face, on_slave.xi, on_slave.eta);
-            if (!master_face.invert(slave.plane(x), on_master.xi, on_master.eta))
-            {
-              on_master = master_centre;
-              continue;
-            }
-            const Vector3 gap = master.position(m, on_master.xi, on_master.eta) - x;
-            if (gap.norm() > reach_)
-              continue;
-            const double area = twice_area * rule.weight(q);
-            points_.push_back({on_slave.xi,
-                               on_slave.eta,
-                               area / slave.facet.area(on_slave.xi, on_slave.eta),
-                               {m, on_master.xi, on_master.eta}});
-            covered_ += area;
-          }
-        }
-        return true;
-      }
-      double covered() const
-      {
-        return covered_;
-      }
-
-    private:
-      const unsigned int        degree_;
-      const double              reach_;
-      std::vector<MortarPoint> &points_;
-      double                    covered_ = 0.;
-    };
   } // namespace
 
   double segment_points(const SurfaceGeometry    &slave,
@@ -358,23 +254,64 @@ namespace Nodus
                         const double              reach,
                         std::vector<MortarPoint> &points)
   {
+    // the product of two shape functions has total degree 4 (Q1) or 8 (Q2)
+    static const dealii::Quadrature<2> rules[] = {dealii::QWitherdenVincentSimplex<2>(3, false),
+                                                  dealii::QWitherdenVincentSimplex<2>(5, false)};
+    const unsigned int                 degree  = slave.degree();
+    const auto                        &rule    = rules[degree - 1];
+
     thread_local std::vector<unsigned int> candidates;
-    const unsigned int                     degree = slave.degree();
-    Segments                               segments(degree, reach, points);
-    double                                 face_area = 0.;
+    points.clear();
+    double face_area = 0., covered = 0.;
     for (unsigned int cell = 0; cell < n_cells(degree); ++cell)
     {
-      const SlaveCell slave_cell(slave, f, cell);
-      face_area += slave_cell.area;
-      search.candidates(swept_box(slave_cell.corner, slave_cell.plane.normal, reach), candidates);
+      const auto     corner      = cell_corners(slave, f, cell);
+      const Plane    plane       = plane_through(corner, slave.face(f).orientation);
+      const FlatFace slave_facet = facet(slave, f, plane);
+      const Shadow   window(corner, plane);
+      const double   cell_area = window.polygon.area();
+      face_area += cell_area;
+
+      search.candidates(swept_box(corner, plane.normal, reach), candidates);
       for (const unsigned int m : candidates)
         for (unsigned int master_cell = 0; master_cell < n_cells(degree); ++master_cell)
         {
-          const Polygon polygon = overlap(slave_cell, master, m, master_cell);
-          if (polygon.n > 0 && !segments.add(slave_cell, master, m, master_cell, polygon))
-            return 0.; // no partner
+          const Polygon polygon = overlap(window, plane, cell_area, master, m, master_cell);
+          if (polygon.n == 0)
+            continue;
+          const FlatFace master_face = smooth_face(master, m, plane);
+          double         xi = (cell % degree + 0.5) / degree, eta = (cell / degree + 0.5) / degree;
+          double master_xi = (master_cell % degree + 0.5) / degree, master_eta = (master_cell / degree + 0.5) / degree;
+          for (unsigned int t = 2; t < polygon.n; ++t)
+          {
+            const auto   a = polygon.corner[t - 1] - polygon.corner[0], b = polygon.corner[t] - polygon.corner[0];
+            const double twice_area = cross(a, b);
+            for (unsigned int q = 0; q < rule.size(); ++q)
+            {
+              const Point2 p = polygon.corner[0] + rule.point(q)[0] * a + rule.point(q)[1] * b;
+              if (!slave_facet.invert(p, xi, eta))
+              {
+                points.clear();
+                return 0.; // the face is folded over: no partner
+              }
+              // the partner lies on the smoothed faces, straight across
+              const Point x = slave.position(f, xi, eta);
+              if (!master_face.invert(plane(x), master_xi, master_eta))
+              {
+                master_xi  = (master_cell % degree + 0.5) / degree;
+                master_eta = (master_cell / degree + 0.5) / degree;
+                continue;
+              }
+              const Vector3 gap = master.position(m, master_xi, master_eta) - x;
+              if (gap.norm() > reach)
+                continue;
+              const double area = twice_area * rule.weight(q);
+              points.push_back({xi, eta, area / slave_facet.area(xi, eta), {m, master_xi, master_eta}});
+              covered += area;
+            }
+          }
         }
     }
-    return segments.covered() / face_area;
+    return covered / face_area;
   }
 } // namespace Nodus
