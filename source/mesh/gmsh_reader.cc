@@ -56,6 +56,122 @@ namespace Nodus
       }
       return once;
     }
+
+    /// Which groups have one of the physical ids; all where there are none.
+    std::vector<char> selected_groups(const GmshContent &file, const std::vector<unsigned int> &volume_ids)
+    {
+      std::vector<char> selected;
+      for (const GmshContent::PhysicalIds &physical : file.physical)
+        selected.push_back(volume_ids.empty() ||
+                           std::any_of(physical.begin(),
+                                       physical.end(),
+                                       [&](const int id) {
+                                         return std::find(volume_ids.begin(), volume_ids.end(), id) != volume_ids.end();
+                                       }));
+      return selected;
+    }
+
+    /// @throws InputError where the selected volumes are not there, or not of hexahedra.
+    void check_selection(const GmshContent               &file,
+                         const std::vector<unsigned int> &volume_ids,
+                         const std::vector<char>         &selected,
+                         const std::string               &name)
+    {
+      std::vector<char> has_volume(file.physical.size(), 0);
+      for (const auto &hexahedron : file.hexahedra)
+        has_volume[hexahedron.group] = 1;
+      for (const auto &other : file.others)
+      {
+        if (selected[other.group])
+          refuse_gmsh(name,
+                      "holds " + std::string(other.type) +
+                          ", nodus needs hexahedra only: use transfinite or extruded volumes with Recombine, or select "
+                          "other volumes with 'Volume ids'");
+        has_volume[other.group] = 1;
+      }
+      std::set<int> present;
+      for (unsigned int g = 0; g < has_volume.size(); ++g)
+        if (has_volume[g])
+          present.insert(file.physical[g].begin(), file.physical[g].end());
+      if (file.hexahedra.empty())
+        refuse_gmsh(name,
+                    "holds no hexahedra; check that the volumes are meshed (gmsh -3) and, where the file has physical "
+                    "groups, that the volumes are in one");
+      for (const unsigned int id : volume_ids)
+        if (present.count(id) == 0)
+          refuse_gmsh(name, "has no volume with physical id " + std::to_string(id) + "; ids present: " + list(present));
+    }
+
+    /// Adds the selected hexahedra, with the vertex numbers of the file.
+    void add_cells(const GmshContent &file, const std::vector<char> &selected, CoarseMesh &mesh)
+    {
+      for (const auto &hexahedron : file.hexahedra)
+        if (selected[hexahedron.group])
+        {
+          const unsigned int   *nodes = file.nodes.data() + hexahedron.first_node;
+          dealii::CellData<dim> cell;
+          for (unsigned int v = 0; v < 8; ++v)
+            cell.vertices[dealii::GeometryInfo<dim>::ucd_to_deal[v]] = nodes[v];
+          mesh.cells.push_back(cell);
+          if (file.n_nodes_per_hexahedron > 8)
+          {
+            std::vector<Point> points;
+            for (unsigned int i = 0; i < file.n_nodes_per_hexahedron; ++i)
+              points.push_back(file.vertices[nodes[i]]);
+            mesh.curved.push_back(QuadraticCell::from_gmsh(points));
+          }
+        }
+    }
+
+    /// Adds the physical surfaces on the boundary of the cells. @throws InputError for faces with two ids.
+    void add_boundary(const GmshContent &file, const std::string &name, CoarseMesh &mesh)
+    {
+      const std::vector<Face> boundary = boundary_faces(mesh.cells, name);
+      std::map<Face, int>     id_of_face;
+      for (const auto &quadrilateral : file.quadrilaterals)
+      {
+        const GmshContent::PhysicalIds &physical = file.physical[quadrilateral.group];
+        if (physical.empty())
+          continue;
+        const Face &c    = quadrilateral.corners;
+        const Face  face = sorted(c);
+        if (!std::binary_search(boundary.begin(), boundary.end(), face))
+          continue; // of another body, or inside this one
+
+        std::set<int> ids(physical.begin(), physical.end());
+        const auto    other = id_of_face.find(face);
+        if (other != id_of_face.end())
+          ids.insert(other->second);
+        if (ids.size() > 1)
+        {
+          std::ostringstream where;
+          where << 0.25 * (file.vertices[c[0]] + file.vertices[c[1]] + file.vertices[c[2]] + file.vertices[c[3]]);
+          refuse_gmsh(name,
+                      "the face at " + where.str() + " has the physical ids " + list(ids) +
+                          "; give each surface one physical id");
+        }
+        if (other != id_of_face.end())
+          continue;
+        id_of_face[face] = *ids.begin();
+
+        dealii::CellData<2> data;
+        data.vertices    = {c[0], c[1], c[3], c[2]};
+        data.boundary_id = *ids.begin();
+        mesh.boundary.boundary_quads.push_back(data);
+      }
+    }
+
+    /// Turns the cells as deal.II wants them, the curved ones with them.
+    void orient_cells(CoarseMesh &mesh)
+    {
+      const std::vector<dealii::CellData<dim>> before = mesh.cells;
+      // A body that was mirrored, or extruded downwards, has its nodes in the other order; tangled cells are caught
+      // later.
+      dealii::GridTools::invert_cells_with_negative_measure(mesh.vertices, mesh.cells);
+      dealii::GridTools::consistently_order_cells(mesh.cells);
+      for (unsigned int c = 0; c < mesh.curved.size(); ++c)
+        mesh.curved[c] = mesh.curved[c].reoriented(before[c].vertices, mesh.cells[c].vertices);
+    }
   } // namespace
 
   GmshFile::GmshFile(const std::string &name)
@@ -68,101 +184,15 @@ namespace Nodus
 
   CoarseMesh GmshFile::body(const std::vector<unsigned int> &volume_ids) const
   {
-    const GmshContent &file = *content_;
-    std::vector<char>  selected; // by group
-    for (const GmshContent::PhysicalIds &physical : file.physical)
-      selected.push_back(volume_ids.empty() ||
-                         std::any_of(physical.begin(),
-                                     physical.end(),
-                                     [&](const int id) {
-                                       return std::find(volume_ids.begin(), volume_ids.end(), id) != volume_ids.end();
-                                     }));
-
-    std::vector<char> has_volume(file.physical.size(), 0);
-    for (const auto &hexahedron : file.hexahedra)
-      has_volume[hexahedron.group] = 1;
-    for (const auto &other : file.others)
-    {
-      if (selected[other.group])
-        refuse_gmsh(name_,
-                    "holds " + std::string(other.type) +
-                        ", nodus needs hexahedra only: use transfinite or extruded volumes with Recombine, or select "
-                        "other volumes with 'Volume ids'");
-      has_volume[other.group] = 1;
-    }
-    std::set<int> present;
-    for (unsigned int g = 0; g < has_volume.size(); ++g)
-      if (has_volume[g])
-        present.insert(file.physical[g].begin(), file.physical[g].end());
-    if (file.hexahedra.empty())
-      refuse_gmsh(name_,
-                  "holds no hexahedra; check that the volumes are meshed (gmsh -3) and, where the file has physical "
-                  "groups, that the volumes are in one");
-    for (const unsigned int id : volume_ids)
-      if (present.count(id) == 0)
-        refuse_gmsh(name_, "has no volume with physical id " + std::to_string(id) + "; ids present: " + list(present));
+    const std::vector<char> selected = selected_groups(*content_, volume_ids);
+    check_selection(*content_, volume_ids, selected, name_);
 
     CoarseMesh mesh;
-    for (const auto &hexahedron : file.hexahedra)
-      if (selected[hexahedron.group])
-      {
-        const unsigned int   *nodes = file.nodes.data() + hexahedron.first_node;
-        dealii::CellData<dim> cell;
-        for (unsigned int v = 0; v < 8; ++v)
-          cell.vertices[dealii::GeometryInfo<dim>::ucd_to_deal[v]] = nodes[v];
-        mesh.cells.push_back(cell);
-        if (file.n_nodes_per_hexahedron > 8)
-        {
-          std::vector<Point> points;
-          for (unsigned int i = 0; i < file.n_nodes_per_hexahedron; ++i)
-            points.push_back(file.vertices[nodes[i]]);
-          mesh.curved.push_back(QuadraticCell::from_gmsh(points));
-        }
-      }
-
-    const std::vector<Face> boundary = boundary_faces(mesh.cells, name_);
-    std::map<Face, int>     id_of_face;
-    for (const auto &quadrilateral : file.quadrilaterals)
-    {
-      const GmshContent::PhysicalIds &physical = file.physical[quadrilateral.group];
-      if (physical.empty())
-        continue;
-      const Face &c    = quadrilateral.corners;
-      const Face  face = sorted(c);
-      if (!std::binary_search(boundary.begin(), boundary.end(), face))
-        continue; // of another body, or inside this one
-
-      std::set<int> ids(physical.begin(), physical.end());
-      const auto    other = id_of_face.find(face);
-      if (other != id_of_face.end())
-        ids.insert(other->second);
-      if (ids.size() > 1)
-      {
-        std::ostringstream where;
-        where << 0.25 * (file.vertices[c[0]] + file.vertices[c[1]] + file.vertices[c[2]] + file.vertices[c[3]]);
-        refuse_gmsh(name_,
-                    "the face at " + where.str() + " has the physical ids " + list(ids) +
-                        "; give each surface one physical id");
-      }
-      if (other != id_of_face.end())
-        continue;
-      id_of_face[face] = *ids.begin();
-
-      dealii::CellData<2> data;
-      data.vertices    = {c[0], c[1], c[3], c[2]};
-      data.boundary_id = *ids.begin();
-      mesh.boundary.boundary_quads.push_back(data);
-    }
-
-    mesh.vertices = file.vertices;
+    add_cells(*content_, selected, mesh);
+    add_boundary(*content_, name_, mesh);
+    mesh.vertices = content_->vertices;
     dealii::GridTools::delete_unused_vertices(mesh.vertices, mesh.cells, mesh.boundary);
-    const std::vector<dealii::CellData<dim>> before = mesh.cells;
-    // A body that was mirrored, or extruded downwards, has its nodes in the other order; tangled cells are caught
-    // later.
-    dealii::GridTools::invert_cells_with_negative_measure(mesh.vertices, mesh.cells);
-    dealii::GridTools::consistently_order_cells(mesh.cells);
-    for (unsigned int c = 0; c < mesh.curved.size(); ++c)
-      mesh.curved[c] = mesh.curved[c].reoriented(before[c].vertices, mesh.cells[c].vertices);
+    orient_cells(mesh);
     return mesh;
   }
 } // namespace Nodus

@@ -1,6 +1,7 @@
 #include "parameters/generators.h"
 #include "parameters/parameter_file.h"
 #include "parameters/parameter_keys.h"
+#include "parameters/parameter_reference.h"
 #include <nodus/parameters/parameters.h>
 
 #include <deal.II/base/utilities.h>
@@ -503,6 +504,27 @@ namespace Nodus
   std::string text_of(const LinearSolverParameters::Type type)
   {
     return text_of(type, solver_names);
+  }
+
+  std::vector<DeclaredKey> Parameters::reference_keys()
+  {
+    Parameters parameters;
+    parameters.bodies.resize(1);
+    parameters.boundary_conditions.resize(1);
+    parameters.contact_pairs.resize(1);
+    ParameterHandler prm;
+    parameters.add_parameters(prm);
+    return declared_keys(prm);
+  }
+
+  std::string Parameters::documentation()
+  {
+    return ParameterReference::page(reference_keys());
+  }
+
+  std::string Parameters::explain(const std::string &key)
+  {
+    return ParameterReference::explain(reference_keys(), key);
   }
 
   std::map<std::string, std::string> Parameters::model() const

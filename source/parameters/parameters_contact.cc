@@ -1,6 +1,8 @@
 #include "parameters/parameter_file.h"
 #include "parameters/parameter_keys.h"
 
+// The keys of a contact pair, in the order of the reference, and what they share with bodies and boundary conditions.
+
 namespace Nodus
 {
   namespace
@@ -65,7 +67,6 @@ namespace Nodus
 
     const Names<ContactPairParameters::StatusTest> status_test_names = {
         {ContactPairParameters::StatusTest::weighted, "weighted"}, {ContactPairParameters::StatusTest::raw, "raw"}};
-
   } // namespace
 
   std::string text_of(const MasterSurfaceParameters::Shape shape)
@@ -151,38 +152,183 @@ namespace Nodus
         numbers);
   }
 
-  /// A rigid surface instead of a meshed master.
-  static void add_master_surface(ParameterKeys::ParameterHandler &prm, MasterSurfaceParameters &surface)
+  namespace
   {
-    using namespace ParameterKeys;
-    add_choice(
-        prm,
-        "Master surface",
-        surface.shape,
-        shape_names,
-        "What the slave touches [-]: faces of a mesh, or a rigid surface in closed form, without boundary ids. It "
-        "moves "
-        "as Master translation and Master rotation say, or, with a Master body, with that rigid body. A paraboloid is "
-        "one of revolution.");
-    prm.add_parameter("Master point",
-                      surface.point,
-                      "Rigid surface: a point of the plane, the centre of the sphere, a point on the axis of the "
-                      "cylinder, the apex of the paraboloid, at t = 0 [length]; three numbers.");
-    prm.add_parameter("Master axis",
-                      surface.axis,
-                      "Rigid surface: axis of the cylinder; normal of the plane, or of the paraboloid at its apex, out "
-                      "of the rigid body, at t = 0 [-]; three numbers.");
-    prm.add_parameter("Master radius",
-                      surface.radius,
-                      "Rigid surface: radius of sphere or cylinder, radius of curvature of the paraboloid at its apex "
-                      "[length], > 0.",
-                      not_negative);
-    prm.add_parameter("Master cavity",
-                      surface.cavity,
-                      "Rigid surface: whether the slave is inside of the sphere, cylinder or paraboloid, and the rigid "
-                      "body around it [-].");
-    add_motion(prm, "Master ", surface.motion, "; zero: Master axis", "Master point");
-  }
+    /// A rigid surface instead of a meshed master.
+    void add_master_surface(ParameterHandler &prm, MasterSurfaceParameters &surface)
+    {
+      add_choice(prm,
+                 "Master surface",
+                 surface.shape,
+                 shape_names,
+                 "What the slave touches [-]: faces of a mesh, or a rigid surface in closed form, without boundary "
+                 "ids. It moves as Master translation and Master rotation say, or, with a Master body, with that rigid "
+                 "body. A paraboloid is one of revolution.");
+      prm.add_parameter("Master point",
+                        surface.point,
+                        "Rigid surface: a point of the plane, the centre of the sphere, a point on the axis of the "
+                        "cylinder, the apex of the paraboloid, at t = 0 [length]; three numbers.");
+      prm.add_parameter("Master axis",
+                        surface.axis,
+                        "Rigid surface: axis of the cylinder; normal of the plane, or of the paraboloid at its apex, "
+                        "out of the rigid body, at t = 0 [-]; three numbers.");
+      prm.add_parameter("Master radius",
+                        surface.radius,
+                        "Rigid surface: radius of sphere or cylinder, radius of curvature of the paraboloid at its "
+                        "apex [length], > 0.",
+                        not_negative);
+      prm.add_parameter("Master cavity",
+                        surface.cavity,
+                        "Rigid surface: whether the slave is inside of the sphere, cylinder or paraboloid, and the "
+                        "rigid body around it [-].");
+      add_motion(prm, "Master ", surface.motion, "; zero: Master axis", "Master point");
+    }
+
+    /// Where gaps and statuses are evaluated, and with which rule.
+    void add_scheme(ParameterHandler &prm, ContactPairParameters &pair)
+    {
+      add_choice(prm,
+                 "Scheme",
+                 pair.scheme,
+                 scheme_names,
+                 "Where gaps and statuses are evaluated [-]: at the slave nodes, at the integration points of the "
+                 "slave faces, or at the slave nodes with jumps averaged over their faces (mortar).");
+      add_choice(prm,
+                 "Integration",
+                 pair.integration,
+                 integration_names,
+                 "Averaged scheme [-]: over whole slave faces with a fixed rule, or exactly over the overlaps of slave "
+                 "and master faces.");
+      add_choice(prm,
+                 "Quadrature rule",
+                 pair.quadrature_rule,
+                 rule_names,
+                 "Rule on slave faces of the integration point scheme and of the averaged scheme by face [-].");
+      prm.add_parameter("Quadrature points",
+                        pair.quadrature_points,
+                        "Points of that rule in each direction of a face [-]: Gauss any, Simpson odd, Newton-Cotes 2, "
+                        "3, 4, 5 or 7; 0: automatic.",
+                        Patterns::Integer(0, 20));
+    }
+
+    /// What the surfaces do once closed, and how they rub.
+    void add_laws(ParameterHandler &prm, ContactPairParameters &pair)
+    {
+      add_choice(prm,
+                 "Contact law",
+                 pair.contact_law,
+                 contact_law_names,
+                 "What the surfaces do once closed [-]: push only, or never open again but slide, or stay tied where "
+                 "they start.");
+      add_choice(prm,
+                 "Friction law",
+                 pair.friction_law,
+                 friction_law_names,
+                 "Limit of the friction traction [-]: friction coefficient times pressure, or the shear limit.");
+      prm.add_parameter("Friction coefficient",
+                        pair.friction_coefficient,
+                        "Coulomb's coefficient [-]; 0: no friction.",
+                        not_negative);
+      prm.add_parameter("Second friction coefficient",
+                        pair.second_friction_coefficient,
+                        "Of orthotropic friction, across the friction direction [-]; 0: as the first one. The limits "
+                        "are the half axes of an ellipse, and slip is normal to it.",
+                        not_negative);
+      prm.add_parameter("Friction direction",
+                        pair.friction_direction,
+                        "Of orthotropic friction: direction in space of the first coefficient, projected on the "
+                        "surface [-]; three numbers.");
+      prm.add_parameter("Friction factor",
+                        pair.friction_factor,
+                        "Factor on the friction coefficients, of Tresca on the shear limit [-]: expression of the "
+                        "reference coordinates x, y, z [length] and of the slip rate v [length/time], e.g. "
+                        "0.6+0.4*exp(-v/10). The slip rate is the slip of the increment over its time.",
+                        Patterns::Anything());
+      prm.add_parameter("Shear limit",
+                        pair.shear_limit,
+                        "Friction tractions do not exceed this [pressure]; 0: no limit (Coulomb).",
+                        not_negative);
+    }
+
+    /// Scales of gaps and slips against tractions: they steer the iteration alone.
+    void add_augmentation(ParameterHandler &prm, ContactPairParameters &pair)
+    {
+      prm.add_parameter("Normal augmentation factor",
+                        pair.normal_augmentation_factor,
+                        "Factor on Young's modulus over face size, the scale of gaps against pressures [-]. It changes "
+                        "the path of the iteration, not the solution.",
+                        positive);
+      prm.add_parameter("Tangential augmentation factor",
+                        pair.tangential_augmentation_factor,
+                        "Factor on the scale of slips against friction tractions [-]. It changes the path of the "
+                        "iteration, not the solution.",
+                        positive);
+    }
+
+    /// How areas, weights, faces and normals are made of the mesh.
+    void add_surface_treatment(ParameterHandler &prm, ContactPairParameters &pair)
+    {
+      add_choice(
+          prm, "Surface measure", pair.surface_measure, surface_measure_names, "Area that pressures refer to [-].");
+      add_choice(prm,
+                 "Weights",
+                 pair.weights,
+                 weights_names,
+                 "Integration of the contact terms over slave faces [-], nodal scheme only.");
+      add_choice(prm,
+                 "Surface",
+                 pair.surface,
+                 surface_names,
+                 "Faces of degree 1 as they are, or rounded to meet the averaged normals of the nodes [-]; edges "
+                 "sharper than 45 degrees stay.");
+      add_choice(prm,
+                 "Normal",
+                 pair.normal,
+                 normal_names,
+                 "Contact normal [-]: of the master face, averaged over the faces at each master node, or averaged "
+                 "over the faces at the slave node.");
+    }
+
+    /// How far a site looks for its partner.
+    void add_search(ParameterHandler &prm, ContactPairParameters &pair)
+    {
+      prm.add_parameter("Search distance",
+                        pair.search_distance,
+                        "Slave nodes farther than this from the master have no partner [length]; 0: automatic.",
+                        not_negative);
+      prm.add_parameter("Projection tolerance",
+                        pair.projection_tolerance,
+                        "How far a projection may hang over the rim of the master surface [face sizes]. A site that is "
+                        "closed keeps its partner up to twice that.",
+                        not_negative);
+    }
+
+    /// What holds before the first increment: statuses, and nodes that start inside the master.
+    void add_initial_state(ParameterHandler &prm, ContactPairParameters &pair)
+    {
+      add_choice(prm,
+                 "Initial status",
+                 pair.initial_status,
+                 initial_status_names,
+                 "Status of the slave nodes at the start [-].");
+      add_choice(prm,
+                 "Initial overclosure",
+                 pair.initial_overclosure,
+                 overclosure_names,
+                 "What happens to slave nodes that start inside the master [-]: they are pushed out in the first "
+                 "increment; or stay where they are, free of stress; or are pushed out in the course of the first "
+                 "interval of the load path. Tied and bilateral pairs stay where they are.");
+      prm.add_parameter("Adjustment distance",
+                        pair.adjustment_distance,
+                        "Gaps up to this, too, start closed and free of stress, if overclosures stay [length]; tied "
+                        "and bilateral pairs, 0: a tenth of the mean slave face.",
+                        not_negative);
+      prm.add_parameter("Overclosure limit",
+                        pair.overclosure_limit,
+                        "A run with a larger initial overclosure is refused [length]; 0: half of the mean slave face.",
+                        not_negative);
+    }
+  } // namespace
 
   void ParameterKeys::add_contact_pair(ParameterHandler &prm, ContactPairParameters &pair)
   {
@@ -191,123 +337,12 @@ namespace Nodus
     add_region(prm, "Slave ", pair.slave, " that carries the contact pressures, better the softer or finer one", where);
     add_region(prm, "Master ", pair.master, " that the slave nodes are projected onto", where);
     add_master_surface(prm, pair.master_surface);
-    add_choice(prm,
-               "Scheme",
-               pair.scheme,
-               scheme_names,
-               "Where gaps and statuses are evaluated [-]: at the slave nodes, at the integration points of the slave "
-               "faces, or at the slave nodes with jumps averaged over their faces (mortar).");
-    add_choice(
-        prm,
-        "Integration",
-        pair.integration,
-        integration_names,
-        "Averaged scheme [-]: over whole slave faces with a fixed rule, or exactly over the overlaps of slave and "
-        "master faces.");
-    add_choice(prm,
-               "Quadrature rule",
-               pair.quadrature_rule,
-               rule_names,
-               "Rule on slave faces of the integration point scheme and of the averaged scheme by face [-].");
-    prm.add_parameter("Quadrature points",
-                      pair.quadrature_points,
-                      "Points of that rule in each direction of a face [-]: Gauss any, Simpson odd, Newton-Cotes 2, 3, "
-                      "4, 5 or 7; 0: automatic.",
-                      Patterns::Integer(0, 20));
-    add_choice(
-        prm,
-        "Contact law",
-        pair.contact_law,
-        contact_law_names,
-        "What the surfaces do once closed [-]: push only, or never open again but slide, or stay tied where they "
-        "start.");
-    add_choice(prm,
-               "Friction law",
-               pair.friction_law,
-               friction_law_names,
-               "Limit of the friction traction [-]: friction coefficient times pressure, or the shear limit.");
-    prm.add_parameter(
-        "Friction coefficient", pair.friction_coefficient, "Coulomb's coefficient [-]; 0: no friction.", not_negative);
-    prm.add_parameter("Second friction coefficient",
-                      pair.second_friction_coefficient,
-                      "Of orthotropic friction, across the friction direction [-]; 0: as the first one. The limits are "
-                      "the half axes of an ellipse, and slip is normal to it.",
-                      not_negative);
-    prm.add_parameter("Friction direction",
-                      pair.friction_direction,
-                      "Of orthotropic friction: direction in space of the first coefficient, projected on the surface "
-                      "[-]; three numbers.");
-    prm.add_parameter("Friction factor",
-                      pair.friction_factor,
-                      "Factor on the friction coefficients, of Tresca on the shear limit [-]: expression of the "
-                      "reference coordinates x, y, z [length] and of the slip rate v [length/time], e.g. "
-                      "0.6+0.4*exp(-v/10). The slip rate is the slip of the increment over its time.",
-                      Patterns::Anything());
-    prm.add_parameter("Shear limit",
-                      pair.shear_limit,
-                      "Friction tractions do not exceed this [pressure]; 0: no limit (Coulomb).",
-                      not_negative);
-    prm.add_parameter("Normal augmentation factor",
-                      pair.normal_augmentation_factor,
-                      "Factor on Young's modulus over face size, the scale of gaps against pressures [-]. It "
-                      "changes the path of the iteration, not the solution.",
-                      positive);
-    prm.add_parameter("Tangential augmentation factor",
-                      pair.tangential_augmentation_factor,
-                      "Factor on the scale of slips against friction tractions [-]. It changes the path of the "
-                      "iteration, not the solution.",
-                      positive);
-    add_choice(
-        prm, "Surface measure", pair.surface_measure, surface_measure_names, "Area that pressures refer to [-].");
-    add_choice(prm,
-               "Weights",
-               pair.weights,
-               weights_names,
-               "Integration of the contact terms over slave faces [-], nodal scheme only.");
-    add_choice(prm,
-               "Surface",
-               pair.surface,
-               surface_names,
-               "Faces of degree 1 as they are, or rounded to meet the averaged normals of the nodes [-]; edges sharper "
-               "than 45 degrees stay.");
-    add_choice(prm,
-               "Normal",
-               pair.normal,
-               normal_names,
-               "Contact normal [-]: of the master face, averaged over the faces at each master node, or averaged over "
-               "the faces at the slave node.");
-    prm.add_parameter("Search distance",
-                      pair.search_distance,
-                      "Slave nodes farther than this from the master have no partner [length]; 0: automatic.",
-                      not_negative);
-    prm.add_parameter("Projection tolerance",
-                      pair.projection_tolerance,
-                      "How far a projection may hang over the rim of the master surface [face sizes]. A site that is "
-                      "closed keeps its "
-                      "partner up to twice that.",
-                      not_negative);
-    add_choice(prm,
-               "Initial status",
-               pair.initial_status,
-               initial_status_names,
-               "Status of the slave nodes at the start [-].");
-    add_choice(
-        prm,
-        "Initial overclosure",
-        pair.initial_overclosure,
-        overclosure_names,
-        "What happens to slave nodes that start inside the master [-]: they are pushed out in the first increment; "
-        "or stay where they are, free of stress; or are pushed out in the course of the first interval of the "
-        "load path. Tied and bilateral pairs stay where they are.");
-    prm.add_parameter("Adjustment distance",
-                      pair.adjustment_distance,
-                      "Gaps up to this, too, start closed and free of stress, if overclosures stay [length]; tied and "
-                      "bilateral pairs, 0: a tenth of the mean slave face.",
-                      not_negative);
-    prm.add_parameter("Overclosure limit",
-                      pair.overclosure_limit,
-                      "A run with a larger initial overclosure is refused [length]; 0: half of the mean slave face.",
-                      not_negative);
+    add_scheme(prm, pair);
+    add_laws(prm, pair);
+    add_augmentation(prm, pair);
+    add_surface_treatment(prm, pair);
+    add_search(prm, pair);
+    add_initial_state(prm, pair);
     add_choice(prm,
                "Status test",
                pair.status_test,

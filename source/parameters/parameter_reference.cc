@@ -1,9 +1,8 @@
+#include "parameters/parameter_reference.h"
 #include "base/suggestion.h"
 #include "parameters/generators.h"
-#include "parameters/parameter_file.h"
-#include <nodus/parameters/parameters.h>
+#include <nodus/base/types.h>
 
-#include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
@@ -77,39 +76,11 @@ namespace Nodus
                   "\n  example    " + Generators::example(name) + '\n';
       return text;
     }
-  } // namespace
 
-  std::vector<DeclaredKey> Parameters::reference_keys()
-  {
-    Parameters parameters;
-    parameters.bodies.resize(1);
-    parameters.boundary_conditions.resize(1);
-    parameters.contact_pairs.resize(1);
-    dealii::ParameterHandler prm;
-    parameters.add_parameters(prm);
-    return declared_keys(prm);
-  }
-
-  std::string Parameters::explain(const std::string &key)
-  {
-    // any number of a body, condition or pair, and blanks around '/' as in the titles of the reference
-    std::string wanted = std::regex_replace(lower_case(dealii::Utilities::trim(key)), std::regex("\\s*/\\s*"), "/");
-    wanted             = std::regex_replace(wanted, std::regex("(body|condition|pair) ([0-9]+|<n>)(?=/|$)"), "$1 1");
-
-    const std::vector<DeclaredKey> keys = reference_keys();
-    std::string                    text;
-    // What is meant is a part of a path or of a choice, or else words of a path in any order, or else of a meaning.
-    if (!wanted.empty())
-    {
-      text = entries(keys, [&](const DeclaredKey &k) { return has(k.path(), wanted) || has(choices(k), wanted); });
-      if (const std::string more = generators(wanted); !more.empty())
-        text += text.empty() ? more.substr(1) : more;
-      if (text.empty())
-        text = entries(keys, [&](const DeclaredKey &k) { return has_words(k.path(), wanted); });
-      if (text.empty())
-        text = entries(keys, [&](const DeclaredKey &k) { return has_words(k.documentation, wanted); });
-    }
-    if (text.empty())
+    /// The names of generators, keys and choices that look like @p wanted, of which the last part of a path counts.
+    /// @p words: the same in lower case.
+    std::vector<std::string>
+    similar_names(const std::vector<DeclaredKey> &keys, const std::string &wanted, const std::string &words)
     {
       std::vector<std::string> names = Generators::names();
       for (const auto &k : keys)
@@ -121,19 +92,44 @@ namespace Nodus
             names.push_back(name);
       }
       std::vector<std::string> near;
-      if (!wanted.empty())
-        near = nearest(key.substr(key.rfind('/') + 1), names);
+      if (!words.empty())
+        near = nearest(wanted.substr(wanted.rfind('/') + 1), names);
       // several words, some of which may be right
-      for (const std::string &word : dealii::Utilities::split_string_list(wanted, ' '))
+      for (const std::string &word : dealii::Utilities::split_string_list(words, ' '))
         if (near.empty() && word.size() > 2)
           near = nearest(word, names);
-      throw InputError("--explain: there is no key like '" + key + "'" +
+      return near;
+    }
+  } // namespace
+
+  std::string ParameterReference::explain(const std::vector<DeclaredKey> &keys, const std::string &wanted)
+  {
+    // any number of a body, condition or pair, and blanks around '/' as in the titles of the reference
+    std::string words = std::regex_replace(lower_case(dealii::Utilities::trim(wanted)), std::regex("\\s*/\\s*"), "/");
+    words             = std::regex_replace(words, std::regex("(body|condition|pair) ([0-9]+|<n>)(?=/|$)"), "$1 1");
+
+    std::string text;
+    // What is meant is a part of a path or of a choice, or else words of a path in any order, or else of a meaning.
+    if (!words.empty())
+    {
+      text = entries(keys, [&](const DeclaredKey &k) { return has(k.path(), words) || has(choices(k), words); });
+      if (const std::string more = generators(words); !more.empty())
+        text += text.empty() ? more.substr(1) : more;
+      if (text.empty())
+        text = entries(keys, [&](const DeclaredKey &k) { return has_words(k.path(), words); });
+      if (text.empty())
+        text = entries(keys, [&](const DeclaredKey &k) { return has_words(k.documentation, words); });
+    }
+    if (text.empty())
+    {
+      const std::vector<std::string> near = similar_names(keys, wanted, words);
+      throw InputError("--explain: there is no key like '" + wanted + "'" +
                        (near.empty() ? "; nodus --document lists all keys" : did_you_mean(near)));
     }
     return text;
   }
 
-  std::string Parameters::documentation()
+  std::string ParameterReference::page(const std::vector<DeclaredKey> &keys)
   {
     std::string text    = R"(# Parameters
 
@@ -155,7 +151,7 @@ Units are yours to choose, but consistently: N, mm and MPa, or N, m and Pa. The 
 a value depends on time, `pi` and the functions of muParser and deal.II's FunctionParser.
 )";
     std::string section = "none yet";
-    for (const auto &key : reference_keys())
+    for (const auto &key : keys)
     {
       if (key.section != section)
         text += "\n## " + (key.section.empty() ? "Top level" : title_of(key.section)) +
