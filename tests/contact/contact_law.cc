@@ -6,6 +6,8 @@
 
 #include "contact/contact_law.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <functional>
 
 using namespace Cases;
@@ -23,7 +25,7 @@ namespace
   /// One status for all nodes, or those of `mixed` in turn.
   const LawStatus open{false, false, true}, frictionless{true, false, true}, stick{true, true, true},
       slip{true, true, false};
-  const std::vector<LawStatus> mixed{stick, slip, open, frictionless};
+  const std::vector<LawStatus> mixed{slip, stick, open, frictionless};
 
   struct Case
   {
@@ -233,15 +235,14 @@ namespace
     std::cout << std::fixed << std::setprecision(6);
     std::cout << "  weighted sums: residual " << residual << ", tangent " << tangent << ", by threshold "
               << by_threshold << std::endl;
-    if (point.n_nodes > 1)
-      return;
-    for (unsigned int i = 0; i < sum.n_unknowns(); ++i)
+    for (unsigned int i = 0; i < sum.n_unknowns() && point.n_nodes == 1; ++i)
     {
       std::cout << "  " << std::setw(10) << sum.residual[i] << " |";
       for (unsigned int j = 0; j < sum.n_unknowns(); ++j)
         std::cout << " " << std::setw(10) << sum.tangent(i, j);
       std::cout << " | " << std::setw(10) << sum.by_threshold[i] << std::endl;
     }
+    std::cout << std::defaultfloat;
   }
 
   void compare(const Kind &kind, const Case &what)
@@ -313,7 +314,7 @@ namespace
     Vector3 t = traction(node_at(open, d));
     check("  no traction where open", t.norm() == 0.);
     t = traction(node_at(frictionless, d));
-    check("  the pressure pushes the slave away from the master", t[2], -10., 1e-14);
+    check("  the pressure pushes the slave away from the master", t[2], -10., 1e-12);
     check("  no friction without friction", std::hypot(t[0], t[1]) == 0.);
 
     // Coulomb: all that slips has the traction mu p against its motion, whatever the augmentation, and keeps it.
@@ -321,8 +322,8 @@ namespace
     {
       const LawPoint point = node_at(slip, factor * d);
       t                    = traction(point);
-      check("  friction of slip", std::hypot(t[0], t[1]), 3., 1e-14);
-      check("  and its x part, against the slip", t[0], -1.8, 1e-14);
+      check("  friction of slip", std::hypot(t[0], t[1]), 3., 1e-12);
+      check("  and its x part, against the slip", t[0], -1.8, 1e-12);
       law(point, sum);
       double along = 0., across = 0.;
       for (unsigned int i = 0; i < 2; ++i)
@@ -341,44 +342,44 @@ namespace
 
     // Stick: the traction is mu lambda Lambda; the law is no slip.
     t = traction(node_at(stick, d, {{0.5, -0.25}}));
-    check("  friction of stick, x", t[0], -1.5, 1e-14);
-    check("  y", t[1], 0.75, 1e-14);
+    check("  friction of stick, x", t[0], -1.5, 1e-12);
+    check("  y", t[1], 0.75, 1e-12);
     law(node_at(stick, d, {{0.5, -0.25}}), sum);
-    check("  law of stick: mu p weight slip, x", sum.residual[4], 3. * 0.25 * 0.6, 1e-14);
-    check("  y", sum.residual[5], 3. * 0.25 * -0.8, 1e-14);
-    check("  law of contact: - weight distance", sum.residual[3], -0.25 * 0.01, 1e-14);
+    check("  law of stick: mu p weight slip, x", sum.residual[4], 3. * 0.25 * 0.6, 1e-12);
+    check("  y", sum.residual[5], 3. * 0.25 * -0.8, 1e-12);
+    check("  law of contact: - weight distance", sum.residual[3], -0.25 * 0.01, 1e-12);
     law(node_at(open, d), sum);
-    check("  law of open nodes: - weight lambda / h_n", sum.residual[3], 0.25 * 10. / 7., 1e-14);
+    check("  law of open nodes: - weight lambda / h_n", sum.residual[3], 0.25 * 10. / 7., 1e-12);
 
     // Slip that is on the sphere satisfies its law; inside of the ball the projection takes over.
     law(node_at(slip, Vector3(), {{0.6, -0.8}}), sum);
     check("  law of slip on the sphere", std::hypot(sum.residual[4], sum.residual[5]) < 1e-15);
     t = traction(node_at(slip, 0.1 * d, {{0.3, 0.}}));
-    check("  friction inside of the ball, x", t[0], -3. * (0.3 + 4. / 3. * 0.06), 1e-14);
-    check("  y", t[1], 3. * 4. / 3. * 0.08, 1e-14);
+    check("  friction inside of the ball, x", t[0], -3. * (0.3 + 4. / 3. * 0.06), 1e-12);
+    check("  y", t[1], 3. * 4. / 3. * 0.08, 1e-12);
 
     LawPoint mean    = node_at(stick, 2. * d);
     mean.in_the_mean = true;
     t                = traction(mean);
-    check("  in the mean the pressure is p + h_n d_n", t[2], -10. - 7. * 0.02, 1e-14);
-    check("  and what sticks slips beyond the limit", std::hypot(t[0], t[1]), 3., 1e-14);
+    check("  in the mean the pressure is p + h_n d_n", t[2], -10. - 7. * 0.02, 1e-12);
+    check("  and what sticks slips beyond the limit", std::hypot(t[0], t[1]), 3., 1e-12);
 
     LawPoint held = node_at(slip, d, {{-0.6, -0.8}});
     held.held     = true;
     t             = traction(held);
-    check("  held friction keeps its direction, x", t[0], 1.8, 1e-14);
-    check("  y", t[1], 2.4, 1e-14);
+    check("  held friction keeps its direction, x", t[0], 1.8, 1e-12);
+    check("  y", t[1], 2.4, 1e-12);
 
     LawPoint orthotropic                      = node_at(slip, {Vector3({0., 5., 0.})});
     orthotropic.jumps[0].frame.friction_scale = {{1., 0.5}};
-    check("  orthotropic friction along the second axis", traction(orthotropic)[1], -1.5, 1e-14);
+    check("  orthotropic friction along the second axis", traction(orthotropic)[1], -1.5, 1e-12);
 
     LawPoint fixed = node_at(slip, d);
     for (LawFrame *f : {&fixed.nodes[0].frame, &fixed.jumps[0].frame})
       f->tangent_free = {{false, true}};
     t = traction(fixed);
     check("  no friction along a void tangent", t[0] == 0.);
-    check("  all of it along the other one", t[1], 3., 1e-14);
+    check("  all of it along the other one", t[1], 3., 1e-12);
 
     // Tied: sticks with the stiffness of the bodies as threshold, in tension as well; its distance is without what is
     // adjusted.
@@ -386,8 +387,8 @@ namespace
     tied.nodes[0].lambda = 5.;
     set_threshold(tied, -2000.);
     t = traction(tied);
-    check("  tied: pull", t[2], 5., 1e-14);
-    check("  tied: shear", t[0], -2., 1e-14);
+    check("  tied: pull", t[2], 5., 1e-12);
+    check("  tied: shear", t[0], -2., 1e-12);
     law(tied, sum);
     check("  tied: laws", std::abs(sum.residual[3]) + std::hypot(sum.residual[4], sum.residual[5]) == 0.);
 
@@ -409,9 +410,9 @@ namespace
                              std::abs(sum.tangent(i, 3 + j))});
     check("  no friction between a node that sticks and one that slips", coupling == 0.);
     check("  weight of the threshold of stick, one node", threshold_weight(node_at(stick, d), 0) == 0.);
-    check("  of slip, one node", threshold_weight(node_at(slip, d), 0), 1., 1e-14);
-    check("  of stick among others", threshold_weight(pair, 0), 0.5, 1e-14);
-    check("  of slip among others", threshold_weight(pair, 1), 0.5, 1e-14);
+    check("  of slip, one node", threshold_weight(node_at(slip, d), 0), 1., 1e-12);
+    check("  of stick among others", threshold_weight(pair, 0), 0.5, 1e-12);
+    check("  of slip among others", threshold_weight(pair, 1), 0.5, 1e-12);
     check("  of frictionless contact", threshold_weight(node_at(frictionless, d), 0) == 0.);
     check("  where open", threshold_weight(node_at(open, d), 0) == 0.);
   }
@@ -429,7 +430,7 @@ int main(int argc, char **argv)
                             {"stick", {stick}},
                             {"slip", {slip}},
                             {"slip inside of the ball", {slip}, 0.3},
-                            {"mixed", mixed},
+                            {"mixed", mixed, 2.},
                             {"mixed, inside of the ball", mixed, 0.3},
                             {"stick, one free tangent", {stick}, 1., false, false, hold_first},
                             {"slip, one free tangent", {slip}, 1., false, false, hold_first},
@@ -439,7 +440,7 @@ int main(int argc, char **argv)
                             {"open, held", {open}, 1., false, true},
                             {"stick, held", {stick}, 1., false, true},
                             {"slip, held", {slip}, 1., false, true},
-                            {"mixed, held", mixed, 1., false, true},
+                            {"mixed, held", mixed, 2., false, true},
                             {"open, in the mean", {open}, 1., true},
                             {"frictionless, in the mean", {frictionless}, 1., true},
                             {"stick, in the mean", {stick}, 1., true},
