@@ -26,7 +26,7 @@ namespace Nodus
       return {v[0], v[1], v[2]};
     }
 
-    /// Shape function times the filter of each filtered field (eq. 32, 33).
+    /// Shape function times the filter of each filtered field (eq. 32, 33, W3).
     struct Filtered
     {
       double contact; ///< phi S
@@ -37,7 +37,7 @@ namespace Nodus
 
     Filtered filter(const LawStatus &status, const double phi, const bool in_the_mean)
     {
-      // in the mean the projection of the slip rows decides between stick and slip
+      // in the mean the projection of the slip rows decides between stick and slip (eq. F3)
       const bool stick = status.stick && !in_the_mean;
       return {status.contact ? phi : 0.,
               status.contact ? 0. : phi,
@@ -58,7 +58,7 @@ namespace Nodus
       Matrix3 projector; ///< on the free tangents, times the friction scale of each
     };
 
-    /// Filtered fields at the point, and all that rows and columns are made of.
+    /// Filtered fields at the point (eq. W4), and all that rows and columns are made of.
     struct Fields
     {
       unsigned int n_nodes, n_jumps;
@@ -144,7 +144,7 @@ namespace Nodus
       f.h_n       = point.normal_augmentation;
       f.h_tau     = point.tangential_augmentation;
       f.held      = point.held;
-      // the normal law of a point is projected, too: its pressure is lambda - h_n d_n where that is negative
+      // the normal law of a point is projected, too: its pressure is lambda - h_n d_n where that is negative (eq. F3)
       f.stiffness = point.in_the_mean ? f.h_n : 0.;
       if (f.slips && f.held) // Lambda stays as it is
         f.pi = f.Lambda_slip;
@@ -161,7 +161,8 @@ namespace Nodus
       {
         const Jump        &i  = f.jumps[a];
         const unsigned int ia = 3 * a;
-        // Minus the force on the slave side: its pressure, its friction where it sticks, and where it slips.
+        // Minus the force on the slave side (eq. 49-54): its pressure, its friction where it sticks, and where it
+        // slips.
         Column3 force = -W * i.contact * (f.lambda_c - f.stiffness * f.distance) * i.normal;
         force.noalias() -= Wt * i.stick * i.projector * f.Lambda_stick;
         force.noalias() -= Wt * i.slip * i.projector * f.pi;
@@ -176,7 +177,7 @@ namespace Nodus
           if (f.slips)                                                                               // eq. 40, 44
             A.block<3, 2>(ia, jc + 1) -= Wt * i.slip * j.slip * i.projector * f.K_B * j.tangent.transpose();
         }
-        // The penalty of the mean: one jump.
+        // The pressure in the mean, which belongs to points with one jump: second term of eq. 36, 37, 41.
         if (f.stiffness > 0. && i.contact != 0.)
           A.block<3, 3>(ia, ia) += W * f.stiffness * i.normal * i.normal.transpose();
         if (f.slips)
@@ -195,14 +196,14 @@ namespace Nodus
       {
         const Node        &i  = f.nodes[a];
         const unsigned int ia = first + 3 * a;
-        // The contact law: no pressure where open, no distance in contact.
+        // The contact law (eq. 55, 56): no pressure where open, no distance in contact.
         r(ia) += -W * i.open * f.lambda_o / f.h_n - W * i.contact * f.distance;
-        // The friction law (eq. 15): no slip where it sticks, the direction of slip where it slips; the plus before the
-        // second term is what makes the tangent symmetric.
+        // The friction law (eq. 57-59): no slip where it sticks, the direction of slip where it slips; the plus before
+        // the second term is what makes the tangent symmetric.
         Eigen::Vector2d law = -Wt * i.stick * i.tangent * f.slip_stick;
         law.noalias() += (Wt / f.h_tau) * i.slip * i.tangent * (f.Lambda_slip - f.pi);
         r.segment<2>(ia + 1) += law;
-        // No friction multiplier where there is no friction.
+        // No friction multiplier where there is no friction (eq. 57-59).
         for (unsigned int t = 0; t < 2 && !f.held; ++t)
           r(ia + 1 + t) -= W * i.void_tangent[t] * f.Lambda_void[t].dot(i.axis[t]);
         for (unsigned int c = 0; c < f.n_nodes; ++c)
@@ -221,12 +222,12 @@ namespace Nodus
       A.block(first, 0, 3 * f.n_nodes, first) = A.block(0, first, first, 3 * f.n_nodes).transpose();
     }
 
-    /// Derivative of the point's residual with respect to its threshold.
+    /// Derivative of the point's residual with respect to its threshold (eq. T3, T4).
     void derive_by_threshold(const Fields &f, Residual &r_t)
     {
       const unsigned int first = 3 * f.n_jumps;
       const double       W = f.W, Wt = f.Wt;
-      // h_tau ~ 1/threshold
+      // h_tau ~ 1/threshold (eq. T2)
       const Column3 pi_t = f.slips ? Column3(f.K_B * f.slip_slip * (f.h_tau / -f.threshold)) : f.pi;
       for (unsigned int a = 0; a < f.n_jumps; ++a)
       {

@@ -5,9 +5,9 @@
 
 #include <array>
 
-// The law of contact and friction at one point of a slave surface: numbers in, numbers out. Who gathers the numbers,
-// and what the sums are used for, is ContactAssembler's business. No type of Eigen stands here, because the library may
-// be built for another instruction set than its callers.
+// The law of contact and friction at one point of a slave surface (theory section 14): numbers in, numbers out. Who
+// gathers the numbers, and what the sums are used for, is ContactAssembler's business. No type of Eigen stands here,
+// because the library may be built for another instruction set than its callers.
 
 namespace Nodus
 {
@@ -61,7 +61,7 @@ namespace Nodus
     double                         normal_augmentation;     ///< h_n > 0 [pressure/length]
     double                         tangential_augmentation; ///< h_tau > 0 of this threshold [1/length]
     /// Regularised: the pressure of contact is lambda - h_n d_n, and friction takes the projection on the unit ball
-    /// whether it sticks or slips.
+    /// whether it sticks or slips (eq. F3).
     bool in_the_mean = false;
     /// The friction multipliers stay as they are; slip keeps the direction that they have.
     bool held = false;
@@ -89,14 +89,14 @@ namespace Nodus
 
     unsigned int n_nodes = 0, first_node = 0; ///< lambda of node a is unknown first_node + 3 a
     /// Conjugate to the jumps minus the forces on the slave side [force]; contact law [volume]; friction law [force
-    /// length].
+    /// length], without friction [area].
     alignas(64) std::array<double, max_unknowns> residual;
     /// Its derivative with respect to the unknowns, n_unknowns x n_unknowns, column by column.
     alignas(64) std::array<double, max_unknowns * max_unknowns> matrix;
     /// Of the point that came last, where it asks for it: derivative of its residual with respect to its threshold,
-    /// with h_tau as 1/threshold. Where the point has one node, its friction law rows have one factor, of which the
-    /// derivative is left out; and friction that sticks has none, because its traction mu lambda_s Lambda is kept when
-    /// the threshold moves.
+    /// with h_tau as 1/threshold (eq. T3, T4). Where the point has one node, its friction law rows have one factor, of
+    /// which the derivative is left out; and friction that sticks has none, because its traction mu lambda_s Lambda is
+    /// kept when the threshold moves.
     alignas(64) std::array<double, max_unknowns> by_threshold;
   };
 
@@ -105,7 +105,8 @@ namespace Nodus
   /// Lambda of a point that is held keeps Lambda instead: its rows have no residual and are regular.
   void add_contact_law(const LawPoint &point, LawSum &sum);
 
-  /// Derivative of the threshold at a point by that of its jump @p a, in as far as the residual depends on it.
+  /// Derivative of the threshold at a point by that of its jump @p a, in as far as the residual depends on it (eq. T1).
+  /// No unit.
   double threshold_weight(const LawPoint &point, unsigned int a);
 } // namespace Nodus
 
