@@ -13,6 +13,8 @@
 
 namespace Nodus
 {
+  struct LawPoint;
+
   /// Nodal values that the contact terms depend on, of the local surface nodes and slave nodes.
   struct ContactState
   {
@@ -69,17 +71,8 @@ namespace Nodus
     std::array<double, 2> slip(const ContactState &state, unsigned int site) const;
 
   private:
-    /// d(mu lambda_s)/d lambda_k of every site whose friction follows the pressure.
-    std::vector<std::vector<std::pair<unsigned int, double>>> threshold_derivative() const;
-
-    /// Part of a driven rigid body in the jump of a site: weight T + omega x arm.
-    struct RigidShare
-    {
-      unsigned int body   = dealii::numbers::invalid_unsigned_int;
-      double       weight = 0.;
-      Vector3      arm;
-    };
-    std::vector<RigidShare> rigid_shares(const ContactState &state) const;
+    /// What the contact law of @p point depends on, into @p law.
+    void gather(const ContactPoint &point, const ContactState &state, LawPoint &law) const;
 
     const ContactSurfaces &surfaces_;
     const Pairing         &pairing_;

@@ -1,0 +1,113 @@
+#ifndef nodus_contact_contact_law_h
+#define nodus_contact_contact_law_h
+
+#include <nodus/base/types.h>
+
+#include <array>
+
+// The law of contact and friction at one point of a slave surface (theory section 14): numbers in, numbers out. Who
+// gathers the numbers, and what the sums are used for, is ContactAssembler's business. No type of Eigen stands here,
+// because the library may be built for another instruction set than its callers.
+
+namespace Nodus
+{
+  /// Status of the fields at a contact point, one a slave node or one for the point.
+  struct LawStatus
+  {
+    bool contact  = false; ///< S
+    bool friction = false; ///< in contact with a threshold above the floor; otherwise frictionless
+    bool stick    = false; ///< S_f; meaningful where friction holds
+  };
+
+  /// Axes in which a slave node or a jump moves.
+  struct LawFrame
+  {
+    Vector3                normal;                       ///< unit, from slave to master
+    std::array<Vector3, 2> tangent;                      ///< unit, normal to each other
+    std::array<bool, 2>    tangent_free{{false, false}}; ///< void directions carry no friction
+    std::array<double, 2>  friction_scale{{1., 1.}};     ///< limit of friction along the tangents over the first one
+  };
+
+  /// A slave node at a contact point: what its multipliers are there.
+  struct LawNode
+  {
+    LawStatus             status;
+    LawFrame              frame;  ///< of which the multipliers use the tangents
+    double                shape;  ///< phi
+    double                lambda; ///< < 0 in compression [pressure]
+    std::array<double, 2> Lambda; ///< along the tangents, friction traction over mu lambda_s
+  };
+
+  /// A jump at a contact point, slave minus master.
+  struct LawJump
+  {
+    LawStatus status;
+    LawFrame  frame;
+    double    shape;    ///< phi of its slave node, 1 where the point has one jump
+    double    distance; ///< d_n > 0 penetration, without what is adjusted [length]
+    Vector3   slip; ///< jump of the displacement of the increment, of which the law takes the free tangents [length]
+  };
+
+  /// All that the law of a contact point depends on.
+  struct LawPoint
+  {
+    static constexpr unsigned int max_nodes = 9; ///< of a face of degree 2
+
+    unsigned int                   n_nodes = 0, n_jumps = 0; ///< n_jumps is n_nodes or 1
+    std::array<LawNode, max_nodes> nodes;
+    std::array<LawJump, max_nodes> jumps;
+    double                         weight;                  ///< of the quadrature [area]
+    double                         threshold;               ///< mu lambda_s <= 0, at the point [pressure]
+    double                         normal_augmentation;     ///< h_n > 0 [pressure/length]
+    double                         tangential_augmentation; ///< h_tau > 0 of this threshold [1/length]
+    /// Regularised: the pressure of contact is lambda - h_n d_n, and friction takes the projection on the unit ball
+    /// whether it sticks or slips (eq. F3).
+    bool in_the_mean = false;
+    /// The friction multipliers stay as they are; slip keeps the direction that they have.
+    bool held = false;
+    /// Fill LawSum::by_threshold.
+    bool linearise_threshold = false;
+  };
+
+  /// Residual and tangent of contact points with the same unknowns: three components of each jump, then lambda,
+  /// Lambda_1, Lambda_2 of each node.
+  struct LawSum
+  {
+    static constexpr unsigned int max_unknowns = 6 * LawPoint::max_nodes;
+
+    /// Nothing yet, of points with @p n_jumps jumps and @p n_nodes nodes: at most LawPoint::max_nodes.
+    void reset(unsigned int n_jumps, unsigned int n_nodes);
+
+    unsigned int n_unknowns() const
+    {
+      return first_node + 3 * n_nodes;
+    }
+    double tangent(const unsigned int i, const unsigned int j) const
+    {
+      return matrix[i + j * n_unknowns()];
+    }
+
+    unsigned int n_nodes = 0, first_node = 0; ///< lambda of node a is unknown first_node + 3 a
+    /// Conjugate to the jumps minus the forces on the slave side [force]; contact law [volume]; friction law [force
+    /// length], without friction [area].
+    alignas(64) std::array<double, max_unknowns> residual;
+    /// Its derivative with respect to the unknowns, n_unknowns x n_unknowns, column by column.
+    alignas(64) std::array<double, max_unknowns * max_unknowns> matrix;
+    /// Of the point that came last, where it asks for it: derivative of its residual with respect to its threshold,
+    /// with h_tau as 1/threshold (eq. T3, T4). Where the point has one node, its friction law rows have one factor, of
+    /// which the derivative is left out; and friction that sticks has none, because its traction mu lambda_s Lambda is
+    /// kept when the threshold moves.
+    alignas(64) std::array<double, max_unknowns> by_threshold;
+  };
+
+  /// Adds residual and tangent of @p point to @p sum, which has been reset for its numbers of jumps and nodes. The
+  /// statuses, the threshold and the augmentations are constants of the tangent, which is symmetric. The tangent in
+  /// Lambda of a point that is held keeps Lambda instead: its rows have no residual and are regular.
+  void add_contact_law(const LawPoint &point, LawSum &sum);
+
+  /// Derivative of the threshold at a point by that of its jump @p a, in as far as the residual depends on it (eq. T1).
+  /// No unit.
+  double threshold_weight(const LawPoint &point, unsigned int a);
+} // namespace Nodus
+
+#endif

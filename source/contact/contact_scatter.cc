@@ -1,0 +1,203 @@
+#include "contact/contact_scatter.h"
+#include "parallel/owned_values.h"
+#include "parallel/wait_for_all.h"
+
+#include <cmath>
+
+namespace Nodus
+{
+  namespace
+  {
+    constexpr int max_unknowns = LawSum::max_unknowns;
+    using LocalMatrix =
+        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_unknowns, max_unknowns>;
+    using LocalVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, max_unknowns, 1>;
+  } // namespace
+
+  ContactScatter::ContactScatter(const ContactSurfaces &surfaces, const JumpOperator &jump, const ContactState &state)
+      : surfaces_(surfaces)
+      , jump_(jump)
+      , state_(state)
+      , shares_(surfaces.layout().n_rigid > 0 ? surfaces.n_sites() : 0)
+      , jump_residual_(3 * surfaces.n_sites(), 0.)
+      , jump_rhs_(3 * surfaces.n_sites(), 0.)
+      , law_residual_(4 * surfaces.slave_nodes().size(), 0.)
+      , law_rhs_(3 * surfaces.slave_nodes().size(), 0.)
+  {
+    for (unsigned int s = 0; s < shares_.size(); ++s)
+      for (auto e = jump.begin(s); e != jump.end(s); ++e)
+        if (const unsigned int body = surfaces.rigid_body(e->node); body != dealii::numbers::invalid_unsigned_int)
+        {
+          shares_[s].body = body; // slave and master are not both rigid
+          shares_[s].weight += e->weight;
+          shares_[s].arm += e->weight * (state.x[e->node] - state.centre[body]);
+        }
+  }
+
+  void ContactScatter::add_friction_weight(const ContactPoint &point, const LawPoint &law)
+  {
+    const double Wt = law.weight * law.threshold;
+    for (unsigned int a = 0; a < law.n_nodes; ++a)
+      if (law.nodes[a].status.friction)
+        law_residual_[4 * point.slaves[a] + 3] -= std::abs(law.nodes[a].shape) * Wt;
+  }
+
+  /// Calls @p f with the flat index and the weight of everything that local unknown @p local consists of.
+  template <typename Function>
+  void ContactScatter::for_each_unknown(const ContactPoint &point,
+                                        const LawSum       &sum,
+                                        const unsigned int  local,
+                                        const Function     &f) const
+  {
+    const BlockLayout &layout = surfaces_.layout();
+    if (local >= sum.first_node)
+    {
+      const DoFIndex     k = surfaces_.multiplier(point.slaves[(local - sum.first_node) / 3]);
+      const unsigned int l = (local - sum.first_node) % 3;
+      f(l == 0 ? layout.lambda(k) : layout.Lambda(k, l - 1), 1.);
+      return;
+    }
+    const unsigned int s = jump_site(point, local / 3), l = local % 3;
+    for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
+      if (!surfaces_.fixed(e->node, l))
+        f(surfaces_.nodes()[e->node].dofs[l], e->weight);
+    if (!shares_.empty() && shares_[s].weight != 0.)
+      surfaces_.for_each_rigid_unknown(shares_[s].body, l, shares_[s].weight, shares_[s].arm, f);
+  }
+
+  /// Driven rigid bodies stand in the border, all else in @p inner.
+  inline void ContactScatter::add_entry(
+      TripletMatrix &inner, const DoFIndex row, const DoFIndex column, const double value, LinearSystem &system) const
+  {
+    const DoFIndex size = surfaces_.layout().size();
+    (row < size && column < size ? inner : system.border).add(row, column, value);
+  }
+
+  void ContactScatter::add(const ContactPoint &point, const LawSum &sum, LinearSystem &system)
+  {
+    const unsigned int n = sum.n_unknowns(), n_jumps = sum.first_node / 3;
+    LocalVector        prescribed = LocalVector::Zero(n);
+    for (unsigned int a = 0; a < n_jumps; ++a)
+    {
+      const Vector3 jump = jump_.jump(jump_site(point, a), state_.prescribed);
+      for (unsigned int c = 0; c < dim; ++c)
+        prescribed(3 * a + c) = jump[c];
+    }
+    const Eigen::Map<const LocalMatrix> A(sum.matrix.data(), n, n);
+    const Eigen::Map<const LocalVector> r(sum.residual.data(), n);
+    const LocalVector                   rhs = -(r + A * prescribed);
+    for (unsigned int l = 0; l < 3; ++l)
+    {
+      for (unsigned int a = 0; a < n_jumps; ++a)
+      {
+        jump_residual_[3 * jump_site(point, a) + l] += r(3 * a + l);
+        jump_rhs_[3 * jump_site(point, a) + l] += rhs(3 * a + l);
+      }
+      for (unsigned int a = 0; a < sum.n_nodes; ++a)
+      {
+        law_residual_[4 * point.slaves[a] + l] += r(sum.first_node + 3 * a + l);
+        law_rhs_[3 * point.slaves[a] + l] += rhs(sum.first_node + 3 * a + l);
+      }
+    }
+
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        if (const double value = A(i, j); value != 0.)
+          for_each_unknown(point,
+                           sum,
+                           i,
+                           [&](const DoFIndex row, const double row_weight)
+                           {
+                             for_each_unknown(
+                                 point,
+                                 sum,
+                                 j,
+                                 [&](const DoFIndex column, const double column_weight) {
+                                   add_entry(system.contact, row, column, row_weight * column_weight * value, system);
+                                 });
+                           });
+  }
+
+  void ContactScatter::add_variation(const ContactPoint              &point,
+                                     const LawSum                    &sum,
+                                     const std::vector<unsigned int> &slaves,
+                                     const Eigen::MatrixXd           &derivative,
+                                     LinearSystem                    &system) const
+  {
+    for (unsigned int m = 0; m < slaves.size(); ++m)
+    {
+      const DoFIndex lambda = surfaces_.layout().lambda(surfaces_.multiplier(slaves[m]));
+      for (unsigned int i = 0; i < sum.n_unknowns(); ++i)
+        if (const double value = derivative(i, m); value != 0.)
+          for_each_unknown(point,
+                           sum,
+                           i,
+                           [&](const DoFIndex row, const double weight)
+                           { add_entry(system.variation, row, lambda, weight * value, system); });
+    }
+  }
+
+  void ContactScatter::add_resultant(std::vector<double> &sum, const RigidShare &share, const Vector3 &force) const
+  {
+    const Vector3 moment = dealii::cross_product_3d(share.arm, force);
+    for (unsigned int c = 0; c < dim && share.weight != 0.; ++c)
+    {
+      sum[2 * dim * share.body + c] += share.weight * force[c];
+      sum[2 * dim * share.body + dim + c] += moment[c];
+    }
+  }
+
+  void ContactScatter::fill_rhs(LinearSystem &system)
+  {
+    surfaces_.slave_exchange().sum(law_rhs_, 3);
+    const OwnedValues normal(system.rhs.block(1)), tangential(system.rhs.block(2));
+    for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
+    {
+      const DoFIndex multiplier = surfaces_.multiplier(k);
+      normal(multiplier)        = law_rhs_[3 * k];
+      for (unsigned int i = 0; i < 2; ++i)
+        tangential(2 * multiplier + i) = law_rhs_[3 * k + 1 + i];
+    }
+    std::vector<Vector3> forces(surfaces_.nodes().size());
+    for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
+      for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (!surfaces_.fixed(e->node, c))
+            forces[e->node][c] += e->weight * jump_rhs_[3 * s + c];
+    surfaces_.add(forces, system.rhs.block(0));
+    system.border_rhs.assign(2 * dim * surfaces_.layout().n_rigid, 0.);
+    for (unsigned int s = 0; s < shares_.size(); ++s)
+      add_resultant(
+          system.border_rhs, shares_[s], Vector3({jump_rhs_[3 * s], jump_rhs_[3 * s + 1], jump_rhs_[3 * s + 2]}));
+  }
+
+  ContactResidual ContactScatter::finish(LinearSystem &system)
+  {
+    const BlockLayout &layout = surfaces_.layout();
+    wait_for_all(layout.communicator);
+    fill_rhs(system);
+
+    surfaces_.site_exchange().sum(jump_residual_, 3);
+    surfaces_.slave_exchange().sum(law_residual_, 4);
+    ContactResidual result;
+    result.jump.resize(surfaces_.n_sites());
+    for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
+      for (unsigned int c = 0; c < dim; ++c)
+        result.jump[s][c] = jump_residual_[3 * s + c];
+    result.rigid.assign(2 * dim * layout.n_rigid, 0.);
+    for (unsigned int s = 0; s < shares_.size(); ++s)
+      if (surfaces_.is_owned(s) && shares_[s].weight != 0.)
+      {
+        add_resultant(result.rigid, shares_[s], result.jump[s]);
+        add_turn(layout, shares_[s].body, shares_[s].arm, result.jump[s], system.border);
+      }
+    for (unsigned int k = 0; k < surfaces_.slave_nodes().size(); ++k)
+    {
+      const double *const row = law_residual_.data() + 4 * k;
+      result.lambda.push_back(row[0]);
+      result.Lambda.push_back({{row[1], row[2]}});
+      result.friction_weight.push_back(row[3]);
+    }
+    return result;
+  }
+} // namespace Nodus

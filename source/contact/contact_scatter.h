@@ -1,0 +1,70 @@
+#ifndef nodus_contact_contact_scatter_h
+#define nodus_contact_contact_scatter_h
+
+#include "contact/contact_assembler.h"
+#include "contact/contact_law.h"
+
+#include <Eigen/Dense>
+
+#include <vector>
+
+namespace Nodus
+{
+  /// Site with jump @p a of a contact point: its own one, or that of a slave node.
+  inline unsigned int jump_site(const ContactPoint &point, const unsigned int a)
+  {
+    return point.site != dealii::numbers::invalid_unsigned_int ? point.site : point.slaves[a];
+  }
+
+  /// Brings what the contact law says of points into the linear system and the residual: jumps become displacements, of
+  /// which the prescribed ones drop out, and motions of driven rigid bodies, which stand in the border.
+  class ContactScatter
+  {
+  public:
+    ContactScatter(const ContactSurfaces &surfaces, const JumpOperator &jump, const ContactState &state);
+
+    /// Adds the weight |mu lambda_s phi| of a point to its slave nodes with friction.
+    void add_friction_weight(const ContactPoint &point, const LawPoint &law);
+
+    /// Adds the @p sum of points with the unknowns of @p point: the tangent to the contact couplings and the border of
+    /// @p system, residual and right-hand side to what finish() hands over.
+    void add(const ContactPoint &point, const LawSum &sum, LinearSystem &system);
+
+    /// Adds the derivative of that sum with respect to the pressures lambda of slave nodes to the variation and the
+    /// border: one column of @p derivative for each of @p slaves.
+    void add_variation(const ContactPoint              &point,
+                       const LawSum                    &sum,
+                       const std::vector<unsigned int> &slaves,
+                       const Eigen::MatrixXd           &derivative,
+                       LinearSystem                    &system) const;
+
+    /// Fills the right-hand side of the multipliers and of the border, subtracts the contact forces from that of the
+    /// displacements, and adds to the border what turning bodies do to moments. Returns the residual. Collective.
+    ContactResidual finish(LinearSystem &system);
+
+  private:
+    /// Part of a driven rigid body in the jump of a site: weight T + omega x arm.
+    struct RigidShare
+    {
+      unsigned int body   = dealii::numbers::invalid_unsigned_int;
+      double       weight = 0.;
+      Vector3      arm;
+    };
+
+    template <typename Function>
+    void for_each_unknown(const ContactPoint &point, const LawSum &sum, unsigned int local, const Function &f) const;
+    void add_entry(TripletMatrix &inner, DoFIndex row, DoFIndex column, double value, LinearSystem &system) const;
+    void add_resultant(std::vector<double> &sum, const RigidShare &share, const Vector3 &force) const;
+    void fill_rhs(LinearSystem &system);
+
+    const ContactSurfaces  &surfaces_;
+    const JumpOperator     &jump_;
+    const ContactState     &state_;
+    std::vector<RigidShare> shares_; ///< of the sites, empty without driven bodies
+    /// Three components of each jump; lambda, two Lambda and, in the residual, the friction weight of each slave node.
+    /// The points of this rank add to ghosts, too.
+    std::vector<double> jump_residual_, jump_rhs_, law_residual_, law_rhs_;
+  };
+} // namespace Nodus
+
+#endif
