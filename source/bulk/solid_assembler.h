@@ -17,8 +17,8 @@
 namespace Nodus
 {
   /// Internal and external forces of the bodies and their tangent, total Lagrangian, full integration
-  /// ((degree+1)^3 Gauss points), on the reference configuration. Holds the states of laws with history at these points:
-  /// those that the increment starts from, and where the last displacement leads to from there.
+  /// ((degree+1)^3 Gauss points), on the reference configuration. Holds the states of laws with history at these
+  /// points: those that the increment starts from, and where the last displacement leads to from there.
   class SolidAssembler
   {
   public:
@@ -77,7 +77,8 @@ namespace Nodus
       double                          stored_energy, dissipation; ///< per reference volume
       double                          JxW;                        ///< reference volume
     };
-    /// Visits the locally owned cells with what is at their points at displacement @p u (with ghosts) of start(); the stress is that of the law at the deformation gradient that it sees.
+    /// Visits the locally owned cells with what is at their points at displacement @p u (with ghosts) of start(); the
+    /// stress is that of the law at the deformation gradient that it sees.
     void visit(const Vector                                                      &u,
                const std::function<void(const dealii::DoFHandler<dim>::active_cell_iterator &cell,
                                         const std::vector<PointResult>                      &points)> &visitor) const;
