@@ -10,6 +10,47 @@ namespace Nodus
 {
   namespace
   {
+    using Entry = JumpOperator::Entry;
+
+    /// A row of G while it is put together.
+    struct Row
+    {
+      const ContactSurfaces &surfaces;
+      std::vector<Entry>     slave = {}, master = {};
+      RigidPart              rigid  = {};
+      Vector3                offset = {}; ///< jump of the positions minus that of the nodal ones
+
+      void clear()
+      {
+        slave.clear();
+        master.clear();
+        rigid  = RigidPart();
+        offset = Vector3();
+      }
+      /// Adds @p weight times a node to @p side, #slave or #master. A hanging node is where those are that it follows,
+      /// but for its reference position.
+      void add(std::vector<Entry> &side, const unsigned int node, const double weight)
+      {
+        const auto add_free = [&side](const unsigned int free_node, const double part)
+        {
+          const auto at =
+              std::find_if(side.begin(), side.end(), [free_node](const Entry &e) { return e.node == free_node; });
+          if (at == side.end())
+            side.push_back({free_node, part});
+          else
+            at->weight += part;
+        };
+        surfaces.expand(node, weight, add_free);
+        offset += weight * surfaces.nodes()[node].offset;
+      }
+      void add(std::vector<Entry> &side, const SurfaceFace &face, const FaceShape &shape, const double sign)
+      {
+        for (unsigned int n = 0; n < shape.n; ++n)
+          if (std::abs(shape.value[n]) > 1e-15)
+            add(side, face.nodes[n], sign * shape.value[n]);
+      }
+    };
+
     /// Largest shift of a mean master point, in sizes of the surface of its slave node: of sites far from contact.
     constexpr double largest_shift = 0.1;
     /// Mean square distance of the master nodes, over the surface of the slave node, at which their mean is not moved,
@@ -20,31 +61,26 @@ namespace Nodus
     /// the mean master point beside the normal through the slave node, and forces along that would turn the bodies. The
     /// least change of the master weights, relative to these, that puts it on the normal; the distance along it stays.
     /// Nodes that come in with a weight of zero so change nothing at once.
-    void balance_moment(const SitePairing         &site,
-                        const double               size,
-                        const std::vector<Point>  &x,
-                        const AveragedJump::Entry *first,
-                        AveragedJump::Entry       *master,
-                        const AveragedJump::Entry *last,
-                        Vector3                   &offset)
+    void balance_moment(const SitePairing &site, const double size, const std::vector<Point> &x, Row &row)
     {
       Vector3 beside, mean;
       double  sum = 0.;
-      for (const AveragedJump::Entry *e = first; e != last; ++e)
-        beside += e->weight * x[e->node];
-      for (const AveragedJump::Entry *e = master; e != last; ++e)
+      for (const auto *const side : {&row.slave, &row.master})
+        for (const Entry &e : *side)
+          beside += e.weight * x[e.node];
+      for (const Entry &e : row.master)
       {
-        mean += std::abs(e->weight) * x[e->node];
-        sum += std::abs(e->weight);
+        mean += std::abs(e.weight) * x[e.node];
+        sum += std::abs(e.weight);
       }
       mean /= sum;
       const auto components = [&](const Vector3 &v)
       { return Eigen::Vector2d(v * site.tangent[0], v * site.tangent[1]); };
       Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-      for (const AveragedJump::Entry *e = master; e != last; ++e)
+      for (const Entry &e : row.master)
       {
-        const Eigen::Vector2d d = components(x[e->node] - mean);
-        spread += std::abs(e->weight) * d * d.transpose();
+        const Eigen::Vector2d d = components(x[e.node] - mean);
+        spread += std::abs(e.weight) * d * d.transpose();
       }
       Eigen::Vector2d shift = components(beside);
       shift *= std::min(1., largest_shift * size / std::max(shift.norm(), std::numeric_limits<double>::min()));
@@ -59,11 +95,60 @@ namespace Nodus
         slope += t * t * (3. - 2. * t) / axes.eigenvalues()[i] * axes.eigenvectors().col(i).dot(shift) *
                  axes.eigenvectors().col(i);
       }
-      for (AveragedJump::Entry *e = master; e != last; ++e)
+      for (Entry &e : row.master)
       {
-        const double change = -std::abs(e->weight) * components(x[e->node] - mean).dot(slope);
-        e->weight += change;
-        offset -= change * (x[e->node] * site.normal) * site.normal;
+        const double change = -std::abs(e.weight) * components(x[e.node] - mean).dot(slope);
+        e.weight += change;
+        row.offset -= change * (x[e.node] * site.normal) * site.normal;
+      }
+    }
+
+    /// Of a slave node with averages over its faces.
+    void
+    make_averaged(const AveragedJump::Row &averages, const SitePairing &site, const std::vector<Point> &x, Row &row)
+    {
+      row.slave  = averages.slave;
+      row.master = averages.master;
+      row.rigid  = averages.rigid;
+      row.offset = averages.offset - averages.rigid.x;
+      if (!row.master.empty())
+        balance_moment(site, std::sqrt(averages.area), x, row);
+    }
+
+    /// Of a slave node or an integration point against the point that it is projected on.
+    void make_pointwise(const unsigned int s, const ContactGeometry &geometry, const Projection &master, Row &row)
+    {
+      const ContactSurfaces    &surfaces = row.surfaces;
+      const unsigned int        p        = surfaces.pair(s);
+      const RigidSurface *const rigid    = geometry.rigid[p];
+      Point                     on_rigid;
+      if (rigid != nullptr)
+      {
+        on_rigid   = rigid->closest(geometry.position(surfaces, s)).x;
+        row.rigid  = rigid->part(on_rigid);
+        row.offset = -row.rigid.x;
+      }
+      else
+        row.offset = -geometry.master[p].offset(master.face, master.xi, master.eta);
+      if (surfaces.is_point(s))
+      {
+        const SlavePoint &point = surfaces.point(s);
+        const FaceShape   shape(surfaces.degree(), point.xi, point.eta);
+        row.add(row.slave, geometry.slave[p].face(point.face), shape, 1.);
+        row.offset += geometry.slave[p].offset(point.face, point.xi, point.eta);
+      }
+      else
+        row.slave.push_back({surfaces.slave_nodes()[s].node, 1.});
+      if (rigid != nullptr && rigid->carrier() != nullptr)
+      {
+        const RigidCarrier::Weights weights = rigid->carrier()->weights(on_rigid);
+        for (unsigned int i = 0; i < weights.size(); ++i)
+          row.add(row.master, rigid->carrier()->nodes()[i], -weights[i]);
+      }
+      if (master.found())
+      {
+        const FaceShape shape(surfaces.degree(), master.xi, master.eta);
+        row.add(row.master, geometry.master[p].face(master.face), shape, -1.);
       }
     }
   } // namespace
@@ -78,88 +163,23 @@ namespace Nodus
     start_.assign(1, 0);
     middle_.clear();
     offset_.clear();
+    rigid_.clear();
     stuck_.clear();
-    std::size_t first_of_part = 0; // slave or master part of a row
-    // a hanging node is where those are that it follows, but for its reference position
-    const auto add = [&](const unsigned int node, const double weight)
-    {
-      surfaces.expand(node,
-                      weight,
-                      [&](const unsigned int free_node, const double part)
-                      {
-                        const auto at = std::find_if(entries_.begin() + first_of_part,
-                                                     entries_.end(),
-                                                     [&](const Entry &e) { return e.node == free_node; });
-                        if (at == entries_.end())
-                          entries_.push_back({free_node, part});
-                        else
-                          at->weight += part;
-                      });
-      offset_.back() += weight * surfaces.nodes()[node].offset;
-    };
-    rigid_.assign(surfaces.n_sites(), RigidPart());
-    const auto add_shape = [&](const SurfaceFace &face, const FaceShape &shape, const double sign)
-    {
-      for (unsigned int n = 0; n < shape.n; ++n)
-        if (std::abs(shape.value[n]) > 1e-15)
-          add(face.nodes[n], sign * shape.value[n]);
-    };
+    Row row{surfaces};
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
     {
-      const unsigned int        p        = surfaces.pair(s);
-      const bool                averages = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
-      const Projection         &master   = pairing[s].master;
-      const RigidSurface *const rigid    = geometry.rigid[p];
+      const unsigned int p = surfaces.pair(s);
+      row.clear();
+      if (pairing[s].found && pairs[p].scheme == ContactPairParameters::Scheme::averaged)
+        make_averaged(averaged.row(s), pairing[s], geometry.slave[p].positions(), row);
+      else if (pairing[s].found && (pairing[s].master.found() || geometry.rigid[p] != nullptr))
+        make_pointwise(s, geometry, pairing[s].master, row);
+      entries_.insert(entries_.end(), row.slave.begin(), row.slave.end());
       middle_.push_back(entries_.size());
-      first_of_part = entries_.size();
-      offset_.emplace_back();
-      if (pairing[s].found && averages)
-      {
-        const AveragedJump::Row &row = averaged.row(s);
-        entries_.insert(entries_.end(), row.slave.begin(), row.slave.end());
-        middle_.back() = entries_.size();
-        entries_.insert(entries_.end(), row.master.begin(), row.master.end());
-        rigid_[s]      = row.rigid;
-        offset_.back() = row.offset - row.rigid.x;
-        if (!row.master.empty())
-          balance_moment(pairing[s],
-                         std::sqrt(row.area),
-                         geometry.slave[p].positions(),
-                         entries_.data() + start_.back(),
-                         entries_.data() + middle_.back(),
-                         entries_.data() + entries_.size(),
-                         offset_.back());
-      }
-      else if (pairing[s].found && (master.found() || rigid != nullptr))
-      {
-        Point on_rigid;
-        if (rigid != nullptr)
-        {
-          on_rigid       = rigid->closest(geometry.position(surfaces, s)).x;
-          rigid_[s]      = rigid->part(on_rigid);
-          offset_.back() = -rigid_[s].x;
-        }
-        else
-          offset_.back() = -geometry.master[p].offset(master.face, master.xi, master.eta);
-        if (surfaces.is_point(s))
-        {
-          const SlavePoint &point = surfaces.point(s);
-          add_shape(geometry.slave[p].face(point.face), FaceShape(surfaces.degree(), point.xi, point.eta), 1.);
-          offset_.back() += geometry.slave[p].offset(point.face, point.xi, point.eta);
-        }
-        else
-          entries_.push_back({surfaces.slave_nodes()[s].node, 1.});
-        middle_.back() = first_of_part = entries_.size();
-        if (rigid != nullptr && rigid->carrier() != nullptr)
-        {
-          const RigidCarrier::Weights weights = rigid->carrier()->weights(on_rigid);
-          for (unsigned int i = 0; i < weights.size(); ++i)
-            add(rigid->carrier()->nodes()[i], -weights[i]);
-        }
-        if (master.found())
-          add_shape(geometry.master[p].face(master.face), FaceShape(surfaces.degree(), master.xi, master.eta), -1.);
-      }
+      entries_.insert(entries_.end(), row.master.begin(), row.master.end());
       start_.push_back(entries_.size());
+      offset_.push_back(row.offset);
+      rigid_.push_back(row.rigid);
     }
   }
 } // namespace Nodus

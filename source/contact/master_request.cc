@@ -176,6 +176,117 @@ namespace Nodus
     return reach;
   }
 
+  namespace
+  {
+    /// Boxes around the master faces of each pair on each rank.
+    class MasterBoxes
+    {
+    public:
+      /// @p own: of each pair. Collective.
+      MasterBoxes(const std::vector<OwnMasters> &own, const MPI_Comm communicator)
+          : rank_(dealii::Utilities::MPI::this_mpi_process(communicator))
+      {
+        std::vector<double> boxes; // per pair: whether there are faces, corners
+        for (const OwnMasters &masters : own)
+        {
+          Box all;
+          if (!masters.leaves.empty())
+            all = masters.leaves[0].first;
+          for (const auto &leaf : masters.leaves)
+            all.merge_with(leaf.first);
+          boxes.push_back(masters.leaves.empty() ? 0. : 1.);
+          for (unsigned int c = 0; c < dim; ++c)
+            boxes.push_back(all.lower_bound(c));
+          for (unsigned int c = 0; c < dim; ++c)
+            boxes.push_back(all.upper_bound(c));
+        }
+        of_rank_ = dealii::Utilities::MPI::all_gather(communicator, boxes);
+      }
+
+      unsigned int n_ranks() const
+      {
+        return of_rank_.size();
+      }
+      /// Whether another rank has master faces of the pair.
+      bool others_have(const unsigned int pair) const
+      {
+        for (unsigned int r = 0; r < n_ranks(); ++r)
+          if (r != rank_ && has_masters(r, pair))
+            return true;
+        return false;
+      }
+      /// Whether rank @p r is another one that may have partners within @p distance of the slave face.
+      bool within(const unsigned int r, const Question &question, const double distance) const
+      {
+        const double *const b = of_rank_[r].data() + numbers * question.pair;
+        return r != rank_ && has_masters(r, question.pair) &&
+               smallest_distance(question.box(), Box({Point(b[1], b[2], b[3]), Point(b[4], b[5], b[6])})) <= distance;
+      }
+
+    private:
+      static constexpr unsigned int numbers = 1 + 2 * dim; ///< per pair
+
+      bool has_masters(const unsigned int r, const unsigned int pair) const
+      {
+        return of_rank_[r][numbers * pair] > 0.;
+      }
+
+      const unsigned int               rank_;
+      std::vector<std::vector<double>> of_rank_;
+    };
+
+    /// What a slave face at @p x asks, about faces within @p reach.
+    Question question_of(const SurfaceFace        &face,
+                         const unsigned int        pair,
+                         const ContactSurfaces    &surfaces,
+                         const std::vector<Point> &x,
+                         const double              reach)
+    {
+      Question question{};
+      question.pair = pair;
+      Box box       = face_box(face, surfaces.degree(), x);
+      for (const unsigned int k : face.slaves) // nodes that hanging ones follow lie beyond the face
+        box.merge_with(Box({x[surfaces.slave_nodes()[k].node], x[surfaces.slave_nodes()[k].node]}));
+      const Vector3 n = centre_normal(face, surfaces.degree(), x);
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        question.lower[c]  = box.lower_bound(c);
+        question.upper[c]  = box.upper_bound(c);
+        question.normal[c] = n[c];
+      }
+      question.ball = reach;
+      return question;
+    }
+
+    /// Brings the balls of the questions down to how far the nearest facing master face of any rank is at most.
+    /// Collective.
+    void shrink_balls(std::vector<Question>         &mine,
+                      const std::vector<OwnMasters> &own,
+                      const MasterBoxes             &boxes,
+                      const MPI_Comm                 communicator)
+    {
+      Questions                                         questions;
+      std::map<unsigned int, std::vector<unsigned int>> asked;
+      for (unsigned int r = 0; r < boxes.n_ranks(); ++r)
+        for (unsigned int i = 0; i < mine.size(); ++i)
+          if (boxes.within(r, mine[i], mine[i].ball))
+          {
+            questions[r].push_back(mine[i]);
+            asked[r].push_back(i);
+          }
+      std::map<unsigned int, std::vector<double>> answers;
+      for (const auto &[other, list] : sparse_exchange(communicator, questions))
+        for (const Question &question : list)
+          answers[other].push_back(own[question.pair].nearest(question));
+      for (const auto &[other, list] : sparse_exchange(communicator, answers))
+        for (unsigned int i = 0; i < list.size(); ++i)
+        {
+          double &ball = mine[asked[other][i]].ball;
+          ball         = std::min(ball, list[i]);
+        }
+    }
+  } // namespace
+
   std::map<unsigned int, std::vector<std::vector<unsigned int>>>
   wanted_masters(const std::vector<ContactPairParameters> &pairs,
                  const ContactSurfaces                    &surfaces,
@@ -184,100 +295,41 @@ namespace Nodus
   {
     const MPI_Comm            communicator = surfaces.layout().communicator;
     const unsigned int        rank         = dealii::Utilities::MPI::this_mpi_process(communicator);
-    const unsigned int        degree       = surfaces.degree();
     const std::vector<double> reach        = search_reach(pairs, surfaces, x);
     // Both sides move, the nearest face away and another one nearer; the automatic reach grows with the surface.
     const double margin = 5. * moves;
 
     std::vector<OwnMasters> own;
-    std::vector<double>     boxes; // per pair: whether there are faces, corners
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+      own.emplace_back(surfaces.master_faces(p), rank, surfaces.degree(), x);
+    const MasterBoxes boxes(own, communicator);
+
+    std::vector<Question> mine; // of slave faces with sites of this rank
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
-      own.emplace_back(surfaces.master_faces(p), rank, degree, x);
-      Box all;
-      if (!own[p].leaves.empty())
-        all = own[p].leaves[0].first;
-      for (const auto &leaf : own[p].leaves)
-        all.merge_with(leaf.first);
-      boxes.push_back(own[p].leaves.empty() ? 0. : 1.);
-      for (unsigned int c = 0; c < dim; ++c)
-        boxes.push_back(all.lower_bound(c));
-      for (unsigned int c = 0; c < dim; ++c)
-        boxes.push_back(all.upper_bound(c));
-    }
-    const auto boxes_of_rank = dealii::Utilities::MPI::all_gather(communicator, boxes);
-
-    const auto has_masters   = [&](const unsigned int r, const unsigned int p) { return boxes_of_rank[r][7 * p] > 0.; };
-    const auto nobody_to_ask = [&](const unsigned int p)
-    {
-      for (unsigned int r = 0; r < boxes_of_rank.size(); ++r)
-        if (r != rank && has_masters(r, p))
-          return false;
-      return true;
-    };
-
-    // Slave faces with sites of this rank, and the ranks to ask about each.
-    std::vector<Question> mine;
-    for (unsigned int p = 0; p < pairs.size(); ++p)
+      if (surfaces.rigid_master(p) != nullptr || !boxes.others_have(p))
+        continue;
+      const bool segments = pairs[p].scheme == ContactPairParameters::Scheme::averaged &&
+                            pairs[p].integration == ContactPairParameters::Integration::segment;
       for (const SurfaceFace &face : surfaces.slave_faces(p))
-        if (surfaces.rigid_master(p) != nullptr || nobody_to_ask(p))
-          break;
-        else if (face.owner == rank || std::any_of(face.slaves.begin(),
-                                                   face.slaves.end(),
-                                                   [&](const unsigned int k) { return surfaces.is_owned(k); }))
+        if (face.owner == rank || std::any_of(face.slaves.begin(),
+                                              face.slaves.end(),
+                                              [&](const unsigned int k) { return surfaces.is_owned(k); }))
         {
-          Question question{};
-          question.pair = p;
-          Box box       = face_box(face, degree, x);
-          for (const unsigned int k : face.slaves) // nodes that hanging ones follow lie beyond the face
-            box.merge_with(Box({x[surfaces.slave_nodes()[k].node], x[surfaces.slave_nodes()[k].node]}));
-          const Vector3 n = centre_normal(face, degree, x);
-          for (unsigned int c = 0; c < dim; ++c)
-          {
-            question.lower[c]  = box.lower_bound(c);
-            question.upper[c]  = box.upper_bound(c);
-            question.normal[c] = n[c];
-          }
-          question.ball       = reach[p];
-          question.ball       = own[p].nearest(question);
-          const bool segments = pairs[p].scheme == ContactPairParameters::Scheme::averaged &&
-                                pairs[p].integration == ContactPairParameters::Integration::segment;
-          question.sweep = segments ? reach[p] + margin : -1.;
+          Question question = question_of(face, p, surfaces, x, reach[p]);
+          question.ball     = own[p].nearest(question);
+          question.sweep    = segments ? reach[p] + margin : -1.;
           mine.push_back(question);
         }
-    const auto within = [&](const unsigned int r, const Question &question, const double distance)
-    {
-      const double *const b = boxes_of_rank[r].data() + 7 * question.pair;
-      return r != rank && has_masters(r, question.pair) &&
-             smallest_distance(question.box(), Box({Point(b[1], b[2], b[3]), Point(b[4], b[5], b[6])})) <= distance;
-    };
+    }
+    shrink_balls(mine, own, boxes, communicator);
 
-    Questions                                         questions;
-    std::map<unsigned int, std::vector<unsigned int>> asked;
-    for (unsigned int r = 0; r < boxes_of_rank.size(); ++r)
-      for (unsigned int i = 0; i < mine.size(); ++i)
-        if (within(r, mine[i], mine[i].ball))
-        {
-          questions[r].push_back(mine[i]);
-          asked[r].push_back(i);
-        }
-    std::map<unsigned int, std::vector<double>> answers;
-    for (const auto &[other, list] : sparse_exchange(communicator, questions))
-      for (const Question &question : list)
-        answers[other].push_back(own[question.pair].nearest(question));
-    for (const auto &[other, list] : sparse_exchange(communicator, answers))
-      for (unsigned int i = 0; i < list.size(); ++i)
-      {
-        double &ball = mine[asked[other][i]].ball;
-        ball         = std::min(ball, list[i]);
-      }
-
-    questions.clear();
+    Questions questions;
     for (Question &question : mine)
       question.ball += margin;
-    for (unsigned int r = 0; r < boxes_of_rank.size(); ++r)
+    for (unsigned int r = 0; r < boxes.n_ranks(); ++r)
       for (const Question &question : mine)
-        if (within(r, question, std::max(question.ball, (1. + sweep_slope) * question.sweep)))
+        if (boxes.within(r, question, std::max(question.ball, (1. + sweep_slope) * question.sweep)))
           questions[r].push_back(question);
     std::map<unsigned int, std::vector<std::vector<unsigned int>>> result;
     for (const auto &[other, list] : sparse_exchange(communicator, questions))

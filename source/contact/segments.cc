@@ -199,6 +199,52 @@ namespace Nodus
       return FlatFace(
           surface.degree(), plane, [&](const unsigned int n) { return surface.positions()[surface.face(f).nodes[n]]; });
     }
+
+    /// The plane through the corners of a cell.
+    Plane plane_through(const std::array<Point, 4> &corner, const double orientation)
+    {
+      Plane plane;
+      plane.normal  = cell_normal(corner, orientation);
+      plane.origin  = corner[0];
+      plane.axis[0] = corner[1] - corner[0];
+      plane.axis[0] -= (plane.axis[0] * plane.normal) * plane.normal;
+      plane.axis[0] /= plane.axis[0].norm();
+      plane.axis[1] = dealii::cross_product_3d(plane.normal, plane.axis[0]);
+      return plane;
+    }
+
+    /// Box around a cell swept along its normal by @p reach to both sides.
+    dealii::BoundingBox<dim> swept_box(const std::array<Point, 4> &corner, const Vector3 &normal, const double reach)
+    {
+      Point low = corner[0], high = low;
+      for (const Point &x : corner)
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          const double swept = reach * std::abs(normal[c]);
+          low[c]             = std::min(low[c], x[c] - swept);
+          high[c]            = std::max(high[c], x[c] + swept);
+        }
+      return dealii::BoundingBox<dim>({low, high});
+    }
+
+    /// What a master cell covers of a slave cell, which is @p window in the @p plane; no corners where that is next to
+    /// nothing or they do not face each other.
+    Polygon overlap(const Shadow          &window,
+                    const Plane           &plane,
+                    const double           cell_area,
+                    const SurfaceGeometry &master,
+                    const unsigned int     m,
+                    const unsigned int     master_cell)
+    {
+      const auto master_corner = cell_corners(master, m, master_cell);
+      if (cell_normal(master_corner, master.face(m).orientation) * plane.normal > -facing_cosine)
+        return Polygon();
+      const Shadow shadow(master_corner, plane);
+      if (shadow.apart(window))
+        return Polygon();
+      const Polygon polygon = clip(shadow.polygon, window.polygon);
+      return polygon.n < 3 || polygon.area() < smallest_overlap * cell_area ? Polygon() : polygon;
+    }
   } // namespace
 
   double segment_points(const SurfaceGeometry    &slave,
@@ -219,44 +265,20 @@ namespace Nodus
     double face_area = 0., covered = 0.;
     for (unsigned int cell = 0; cell < n_cells(degree); ++cell)
     {
-      const auto corner = cell_corners(slave, f, cell);
-      Plane      plane;
-      plane.normal  = cell_normal(corner, slave.face(f).orientation);
-      plane.origin  = corner[0];
-      plane.axis[0] = corner[1] - corner[0];
-      plane.axis[0] -= (plane.axis[0] * plane.normal) * plane.normal;
-      plane.axis[0] /= plane.axis[0].norm();
-      plane.axis[1] = dealii::cross_product_3d(plane.normal, plane.axis[0]);
-
+      const auto     corner      = cell_corners(slave, f, cell);
+      const Plane    plane       = plane_through(corner, slave.face(f).orientation);
       const FlatFace slave_facet = facet(slave, f, plane);
       const Shadow   window(corner, plane);
       const double   cell_area = window.polygon.area();
       face_area += cell_area;
 
-      // the cell swept along its normal
-      Point low = corner[0], high = low;
-      for (const Point &x : corner)
-        for (unsigned int c = 0; c < dim; ++c)
-        {
-          const double swept = reach * std::abs(plane.normal[c]);
-          low[c]             = std::min(low[c], x[c] - swept);
-          high[c]            = std::max(high[c], x[c] + swept);
-        }
-      search.candidates(dealii::BoundingBox<dim>({low, high}), candidates);
-
+      search.candidates(swept_box(corner, plane.normal, reach), candidates);
       for (const unsigned int m : candidates)
         for (unsigned int master_cell = 0; master_cell < n_cells(degree); ++master_cell)
         {
-          const auto master_corner = cell_corners(master, m, master_cell);
-          if (cell_normal(master_corner, master.face(m).orientation) * plane.normal > -facing_cosine)
+          const Polygon polygon = overlap(window, plane, cell_area, master, m, master_cell);
+          if (polygon.n == 0)
             continue;
-          const Shadow shadow(master_corner, plane);
-          if (shadow.apart(window))
-            continue;
-          const Polygon polygon = clip(shadow.polygon, window.polygon);
-          if (polygon.n < 3 || polygon.area() < smallest_overlap * cell_area)
-            continue;
-
           const FlatFace master_face = smooth_face(master, m, plane);
           double         xi = (cell % degree + 0.5) / degree, eta = (cell / degree + 0.5) / degree;
           double master_xi = (master_cell % degree + 0.5) / degree, master_eta = (master_cell / degree + 0.5) / degree;

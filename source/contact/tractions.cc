@@ -3,7 +3,9 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <utility>
 
 namespace Nodus
 {
@@ -72,6 +74,7 @@ namespace Nodus
           }
       return nodes;
     }
+
     /// Results of a slave node as sent to the ranks that have it as a ghost.
     struct NodeResult
     {
@@ -110,6 +113,113 @@ namespace Nodus
       result.maximum_pressure = dealii::Utilities::MPI::max(result.maximum_pressure, communicator);
       result.longest_cycle    = dealii::Utilities::MPI::max(result.longest_cycle, communicator);
     }
+
+    NodeResult node_result(const Around                &around,
+                           const SitePairing           &frame,
+                           const double                 area,
+                           const double                 gap,
+                           const std::array<double, 2> &slip)
+    {
+      const Vector3 traction = -around.force / area;
+      const Vector3 friction = traction - (traction * frame.normal) * frame.normal;
+      NodeResult    result{};
+      result.pressure = -(traction * frame.normal);
+      result.gap      = gap;
+      for (unsigned int c = 0; c < dim; ++c)
+        result.friction[c] = friction[c];
+      for (unsigned int i = 0; i < 2; ++i)
+      {
+        result.shear[i] = friction * frame.tangent[i];
+        result.slip[i]  = slip[i];
+      }
+      result.status = around.status();
+      result.ledger = around.ledger;
+      return result;
+    }
+
+    /// Adds slave node @p k to the fields of its pair.
+    void add_slave_node(const unsigned int     k,
+                        const ContactSurfaces &surfaces,
+                        const SitePairing     &frame,
+                        const double           area,
+                        const NodeResult      &result,
+                        const ContactState    &state,
+                        ContactFields         &fields)
+    {
+      const SlaveNode &slave = surfaces.slave_nodes()[k];
+      const Point     &X     = surfaces.nodes()[slave.node].X;
+      fields.X.push_back(X);
+      fields.displacement.push_back(state.x[slave.node] - X);
+      fields.pressure.push_back(result.pressure);
+      fields.multiplier.push_back(state.lambda[k]);
+      fields.gap.push_back(result.gap);
+      fields.friction.push_back(Vector3(result.friction));
+      for (unsigned int i = 0; i < 2; ++i)
+      {
+        fields.shear[i].push_back(result.shear[i]);
+        fields.slip[i].push_back(result.slip[i]);
+      }
+      fields.status.push_back(result.status);
+      fields.normal.push_back(frame.normal);
+      fields.tangent1.push_back(frame.tangent[0]);
+      fields.area.push_back(area);
+      fields.paired.push_back(frame.found);
+      fields.status_changes.push_back(result.ledger.changes);
+      fields.cycle_period.push_back(result.ledger.period);
+      fields.contradiction.push_back(static_cast<char>(result.ledger.last));
+      fields.number.push_back(surfaces.multiplier(k));
+    }
+
+    /// Adds node @p n of a face, which hangs, to the fields, with what the slave nodes that it follows give it.
+    /// @returns its place.
+    unsigned int add_hanging_node(const unsigned int               n,
+                                  const SurfaceFace               &face,
+                                  const ContactSurfaces           &surfaces,
+                                  const std::vector<Point>        &x,
+                                  const std::vector<unsigned int> &place_of_slave,
+                                  ContactFields                   &fields)
+    {
+      std::vector<std::pair<unsigned int, double>> shares;
+      for (unsigned int j = 0; j < face.slaves.size(); ++j)
+        if (const double share = face.basis[n * face.slaves.size() + j]; share != 0.)
+          shares.emplace_back(place_of_slave[face.slaves[j]], share);
+      const unsigned int node  = face.nodes[n];
+      const SurfaceNode &hung  = surfaces.nodes()[node];
+      const unsigned int place = fields.X.size();
+      fields.interpolate(shares, hung.X, x[node] - hung.X, surfaces.layout().n_slave_nodes + hung.dofs[0] / dim);
+      return place;
+    }
+
+    /// Adds this rank's slave faces of a pair, and their hanging nodes.
+    void add_faces(const unsigned int               pair,
+                   const ContactSurfaces           &surfaces,
+                   const std::vector<Point>        &x,
+                   const std::vector<unsigned int> &place_of_slave,
+                   ContactFields                   &fields)
+    {
+      const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(surfaces.layout().communicator);
+      std::map<unsigned int, unsigned int> place_of_hanging;
+      for (const SurfaceFace &face : surfaces.slave_faces(pair))
+      {
+        if (face.owner != rank)
+          continue;
+        std::vector<unsigned int> places;
+        for (unsigned int n = 0; n < face.nodes.size(); ++n)
+        {
+          const unsigned int node = face.nodes[n], k = surfaces.slave_number(node);
+          if (k != dealii::numbers::invalid_unsigned_int)
+            places.push_back(place_of_slave[k]);
+          else
+          {
+            const auto [place, is_new] = place_of_hanging.emplace(node, 0);
+            if (is_new)
+              place->second = add_hanging_node(n, face, surfaces, x, place_of_slave, fields);
+            places.push_back(place->second);
+          }
+        }
+        fields.faces.push_back(std::move(places));
+      }
+    }
   } // namespace
 
   std::vector<ContactFields> contact_fields(const std::vector<ContactPairParameters> &pairs,
@@ -125,92 +235,26 @@ namespace Nodus
     std::vector<NodeResult>   results(surfaces.slave_nodes().size());
     for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
     {
-      const SitePairing &frame    = pairing[k];
-      const Vector3      traction = -around[k].force / weights.area()[k];
-      const Vector3      friction = traction - (traction * frame.normal) * frame.normal;
-      NodeResult        &result   = results[k];
-      result.pressure             = -(traction * frame.normal);
-      result.gap                  = frame.found ? -assembler.distance(state, k) : 0.;
-      for (unsigned int c = 0; c < dim; ++c)
-        result.friction[c] = friction[c];
-      for (unsigned int i = 0; i < 2; ++i)
-      {
-        result.shear[i] = friction * frame.tangent[i];
-        result.slip[i]  = status.accumulated_slip(k)[i];
-      }
-      result.status = around[k].status();
-      result.ledger = around[k].ledger;
+      const double gap = pairing[k].found ? -assembler.distance(state, k) : 0.;
+      results[k]       = node_result(around[k], pairing[k], weights.area()[k], gap, status.accumulated_slip(k));
     }
     surfaces.slave_exchange().update(results);
 
     std::vector<ContactFields> all(pairs.size());
-    std::vector<unsigned int>  local_number;
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
       all[p].name   = pairs[p].name;
       all[p].degree = surfaces.degree();
     }
+    std::vector<unsigned int> place_of_slave;
     for (unsigned int k = 0; k < results.size(); ++k)
     {
-      const SlaveNode   &slave  = surfaces.slave_nodes()[k];
-      const SitePairing &frame  = pairing[k];
-      const NodeResult  &result = results[k];
-      ContactFields     &fields = all[slave.pair];
-      local_number.push_back(fields.X.size());
-
-      const Point &X = surfaces.nodes()[slave.node].X;
-      fields.X.push_back(X);
-      fields.displacement.push_back(state.x[slave.node] - X);
-      fields.pressure.push_back(result.pressure);
-      fields.multiplier.push_back(state.lambda[k]);
-      fields.gap.push_back(result.gap);
-      fields.friction.push_back(Vector3(result.friction));
-      for (unsigned int i = 0; i < 2; ++i)
-      {
-        fields.shear[i].push_back(result.shear[i]);
-        fields.slip[i].push_back(result.slip[i]);
-      }
-      fields.status.push_back(result.status);
-      fields.normal.push_back(frame.normal);
-      fields.tangent1.push_back(frame.tangent[0]);
-      fields.area.push_back(weights.area()[k]);
-      fields.paired.push_back(frame.found);
-      fields.status_changes.push_back(result.ledger.changes);
-      fields.cycle_period.push_back(result.ledger.period);
-      fields.contradiction.push_back(static_cast<char>(result.ledger.last));
-      fields.number.push_back(surfaces.multiplier(k));
+      ContactFields &fields = all[surfaces.pair(k)];
+      place_of_slave.push_back(fields.X.size());
+      add_slave_node(k, surfaces, pairing[k], weights.area()[k], results[k], state, fields);
     }
-    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(surfaces.layout().communicator);
     for (unsigned int p = 0; p < pairs.size(); ++p)
-    {
-      std::map<unsigned int, unsigned int> place_of_hanging;
-      for (const SurfaceFace &face : surfaces.slave_faces(p))
-        if (face.owner == rank)
-        {
-          all[p].faces.emplace_back();
-          for (unsigned int n = 0; n < face.nodes.size(); ++n)
-          {
-            const unsigned int node = face.nodes[n], k = surfaces.slave_number(node);
-            unsigned int       place;
-            if (k != dealii::numbers::invalid_unsigned_int)
-              place = local_number[k];
-            else if (const auto found = place_of_hanging.find(node); found != place_of_hanging.end())
-              place = found->second;
-            else
-            {
-              std::vector<std::pair<unsigned int, double>> shares;
-              for (unsigned int j = 0; j < face.slaves.size(); ++j)
-                if (const double share = face.basis[n * face.slaves.size() + j]; share != 0.)
-                  shares.emplace_back(local_number[face.slaves[j]], share);
-              const SurfaceNode &hung = surfaces.nodes()[node];
-              place = place_of_hanging[node] = all[p].X.size();
-              all[p].interpolate(
-                  shares, hung.X, state.x[node] - hung.X, surfaces.layout().n_slave_nodes + hung.dofs[0] / dim);
-            }
-            all[p].faces.back().push_back(place);
-          }
-        }
-    }
+      add_faces(p, surfaces, state.x, place_of_slave, all[p]);
     return all;
   }
 
