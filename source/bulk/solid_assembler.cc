@@ -39,13 +39,13 @@ namespace Nodus
       kernels.push_back(kernel);
     }
     n_q = QGauss<dim>(fe.degree + 1).size();
-    cell_u.resize(fe.n_dofs_per_cell());
-    for (auto *v : {&batch_X, &batch_u, &batch_u_before, &batch_force})
+    at_cell.u.resize(fe.n_dofs_per_cell());
+    for (auto *v : {&at_lanes.X, &at_lanes.u, &at_lanes.u_before, &at_lanes.force})
       v->resize(fe.n_dofs_per_cell());
-    batch_stiffness.resize(n_nodes * (n_nodes + 1) / 2 * dim * dim);
-    for (auto *v : {&cell_internal, &cell_external})
+    at_lanes.stiffness.resize(n_nodes * (n_nodes + 1) / 2 * dim * dim);
+    for (auto *v : {&at_cell.internal, &at_cell.external})
       v->reinit(fe.n_dofs_per_cell());
-    cell_tangent.reinit(fe.n_dofs_per_cell(), fe.n_dofs_per_cell());
+    at_cell.tangent.reinit(fe.n_dofs_per_cell(), fe.n_dofs_per_cell());
 
     const IndexSet       &owned = dof_handler.locally_owned_dofs();
     std::vector<DoFIndex> cell_dofs(fe.n_dofs_per_cell()), global_nodes, ghosts, free_nodes;
@@ -95,9 +95,10 @@ namespace Nodus
     cell_nodes.reserve(global_nodes.size());
     for (const DoFIndex node : global_nodes)
       cell_nodes.push_back(nodes->local(node));
-    for (auto *v : {&nodal_X, &nodal_u, &nodal_internal, &nodal_external, &nodal_rhs, &prescribed})
+    for (auto *v :
+         {&at_nodes.X, &at_nodes.u, &at_nodes.internal, &at_nodes.external, &at_nodes.rhs, &at_nodes.prescribed})
       v->resize(dofs.size());
-    is_prescribed.resize(dofs.size());
+    at_nodes.is_prescribed.resize(dofs.size());
     current = committed;
     find_positions(mapping);
   }
@@ -113,7 +114,7 @@ namespace Nodus
         support.reinit(cell);
         for (unsigned int a = 0; a < n_nodes; ++a)
           for (unsigned int i = 0; i < dim; ++i)
-            nodal_X[dim * cell_nodes[c * n_nodes + a] + i] = support.quadrature_point(a)[i];
+            at_nodes.X[dim * cell_nodes[c * n_nodes + a] + i] = support.quadrature_point(a)[i];
       }
   }
 
@@ -169,15 +170,15 @@ namespace Nodus
     if (b < a)
       return entry(b, k, a, i, lane);
     const unsigned int pair = a * n_nodes - a * (a + 1) / 2 + b;
-    return reinterpret_cast<double *>(batch_stiffness.data())[((pair * dim + i) * dim + k) * n_lanes + lane];
+    return reinterpret_cast<double *>(at_lanes.stiffness.data())[((pair * dim + i) * dim + k) * n_lanes + lane];
   }
 
   void SolidAssembler::Scratch::note_prescribed(const AffineConstraints<double> *constraints)
   {
     for (unsigned int i = 0; i < dofs.size(); ++i)
     {
-      is_prescribed[i] = constraints && constraints->is_constrained(dofs[i]);
-      prescribed[i]    = is_prescribed[i] ? constraints->get_inhomogeneity(dofs[i]) : 0.;
+      at_nodes.is_prescribed[i] = constraints && constraints->is_constrained(dofs[i]);
+      at_nodes.prescribed[i]    = at_nodes.is_prescribed[i] ? constraints->get_inhomogeneity(dofs[i]) : 0.;
     }
   }
 
@@ -185,23 +186,23 @@ namespace Nodus
   {
     const unsigned int *const node = cell_nodes.data() + cell * n_nodes;
     for (unsigned int i = 0; i < dim * n_nodes; ++i)
-      cell_u[i] = batch_u[i][lane];
-    cell_internal = 0.;
-    cell_external = 0.;
-    cell_tangent  = 0.;
-    loads.add(cell, {cell_u, cell_internal, cell_external, with_tangent ? &cell_tangent : nullptr});
+      at_cell.u[i] = at_lanes.u[i][lane];
+    at_cell.internal = 0.;
+    at_cell.external = 0.;
+    at_cell.tangent  = 0.;
+    loads.add(cell, {at_cell.u, at_cell.internal, at_cell.external, with_tangent ? &at_cell.tangent : nullptr});
     for (unsigned int i = 0; i < dim * n_nodes; ++i)
     {
-      batch_force[i][lane] += cell_internal(i);
+      at_lanes.force[i][lane] += at_cell.internal(i);
       if (!is_constrained(cell))
-        nodal_external[dim * node[i / dim] + i % dim] += cell_external(i);
+        at_nodes.external[dim * node[i / dim] + i % dim] += at_cell.external(i);
     }
     if (with_tangent)
       for (unsigned int a = 0; a < n_nodes; ++a)
         for (unsigned int b = a; b < n_nodes; ++b)
           for (unsigned int i = 0; i < dim; ++i)
             for (unsigned int k = 0; k < dim; ++k)
-              entry(a, i, b, k, lane) += cell_tangent(dim * a + i, dim * b + k);
+              entry(a, i, b, k, lane) += at_cell.tangent(dim * a + i, dim * b + k);
   }
 
   /// The blocks come from memory while the kernel computes.
@@ -221,14 +222,14 @@ namespace Nodus
       for (unsigned int i = 0; i < dim; ++i)
       {
         const unsigned int dof = dim * node[a] + i;
-        if (!is_prescribed[dof])
+        if (!at_nodes.is_prescribed[dof])
           continue;
         const double diagonal = std::abs(entry(a, i, a, i, lane));
         for (unsigned int b = 0; b < n_nodes; ++b)
           for (unsigned int k = 0; k < dim; ++k)
           {
             double &K = entry(b, k, a, i, lane);
-            nodal_rhs[dim * node[b] + k] -= K * prescribed[dof];
+            at_nodes.rhs[dim * node[b] + k] -= K * at_nodes.prescribed[dof];
             K = 0.;
             if (a == b) // stored in full
               entry(a, i, a, k, lane) = 0.;
@@ -241,32 +242,34 @@ namespace Nodus
   SolidAssembler::Scratch::add_constrained(const unsigned int cell, const unsigned int lane, BlockCsrMatrix *tangent)
   {
     for (unsigned int part = 0; part < 2; ++part)
-      cell_forces[part].assign(dim * n_nodes, 0.);
+      at_cell.forces[part].assign(dim * n_nodes, 0.);
     for (unsigned int i = 0; i < dim * n_nodes; ++i)
-      cell_forces[0][i] = batch_force[i][lane];
+      at_cell.forces[0][i] = at_lanes.force[i][lane];
     if (loads.act_on(cell))
-      std::copy(cell_external.begin(), cell_external.end(), cell_forces[1].begin());
+      std::copy(at_cell.external.begin(), at_cell.external.end(), at_cell.forces[1].begin());
     if (tangent)
     {
-      cell_stiffness.resize(batch_stiffness.size());
-      for (std::size_t k = 0; k < batch_stiffness.size(); ++k)
-        cell_stiffness[k] = batch_stiffness[k][lane];
+      at_cell.stiffness.resize(at_lanes.stiffness.size());
+      for (std::size_t k = 0; k < at_lanes.stiffness.size(); ++k)
+        at_cell.stiffness[k] = at_lanes.stiffness[k][lane];
     }
     constrained.add(constrained.index(cell),
-                    cell_forces[0],
-                    cell_forces[1],
-                    is_prescribed,
-                    prescribed,
-                    cell_stiffness,
+                    at_cell.forces[0],
+                    at_cell.forces[1],
+                    at_nodes.is_prescribed,
+                    at_nodes.prescribed,
+                    at_cell.stiffness,
                     tangent,
-                    {nodal_internal, nodal_external, nodal_rhs});
+                    {at_nodes.internal, at_nodes.external, at_nodes.rhs});
   }
 
-  void SolidAssembler::Scratch::scatter(const unsigned int cell, const unsigned int lane, BlockCsrMatrix &tangent) const
+  void SolidAssembler::Scratch::add_stiffness(const unsigned int cell,
+                                              const unsigned int lane,
+                                              BlockCsrMatrix    &tangent) const
   {
     const std::size_t               n_pairs  = n_nodes * (n_nodes + 1) / 2;
     const BlockCsrMatrix::Position *position = positions.data() + cell * n_pairs;
-    const double                   *K        = reinterpret_cast<const double *>(batch_stiffness.data()) + lane;
+    const double                   *K        = reinterpret_cast<const double *>(at_lanes.stiffness.data()) + lane;
     for (unsigned int pair = 0; pair < n_pairs; ++pair, ++position, K += dim * dim * n_lanes)
     {
       if (!position->stored())
@@ -283,11 +286,11 @@ namespace Nodus
   }
 
   /// No force; on the rows of the nodes, which are prescribed, a diagonal of the size of the others.
-  void SolidAssembler::Scratch::integrate_rigid(const Batch &batch, Lanes &det_F)
+  void SolidAssembler::Scratch::compute_rigid(const Batch &batch, Lanes &det_F)
   {
     det_F = Lanes{} + 1.;
-    std::fill(batch_force.begin(), batch_force.end(), Lanes{});
-    std::fill(batch_stiffness.begin(), batch_stiffness.end(), Lanes{});
+    std::fill(at_lanes.force.begin(), at_lanes.force.end(), Lanes{});
+    std::fill(at_lanes.stiffness.begin(), at_lanes.stiffness.end(), Lanes{});
     const ElementKernel::QuadraturePoint *const points = this->points(batch);
     for (unsigned int v = 0; v < batch.size; ++v)
     {
@@ -313,13 +316,78 @@ namespace Nodus
     if (constraints)
       for (const auto &line : constraints->get_lines())
         conditions.push_back(line.inhomogeneity);
-    const bool same = tangent && tangent == last_tangent && values == nodal_u && conditions == last_conditions;
+    const bool same = tangent && tangent == last.tangent && values == at_nodes.u && conditions == last.conditions;
     if (Utilities::MPI::min(same ? 1 : 0, dof_handler.get_communicator()) == 1)
       return true;
-    nodal_u.swap(values);
-    last_conditions.swap(conditions);
-    last_tangent = tangent;
+    at_nodes.u.swap(values);
+    last.conditions.swap(conditions);
+    last.tangent = tangent;
     return false;
+  }
+
+  void SolidAssembler::Scratch::compute(const Batch &batch, const bool with_stiffness, Lanes &det_F)
+  {
+    const bool goes_on = with_stiffness && iterates > 0 && kernel(batch).has_own_unknowns();
+    if (goes_on)
+      gather(batch, at_nodes.u_before, at_lanes.u_before);
+    kernel(batch).integrate(points(batch),
+                            material(batch),
+                            at_lanes.u.data(),
+                            goes_on ? at_lanes.u_before.data() : nullptr,
+                            {committed.data() + batch.state, current.data() + batch.state},
+                            at_lanes.force.data(),
+                            with_stiffness ? at_lanes.stiffness.data() : nullptr,
+                            det_F);
+  }
+
+  std::string SolidAssembler::Scratch::turned_inside_out(const Batch &batch, const Lanes &det_F) const
+  {
+    for (unsigned int v = 0; v < batch.size; ++v)
+      if (!(det_F[v] > 0.))
+      {
+        const Cell        &cell = cells[batch.first + v];
+        std::ostringstream message;
+        message << "Body " << int(cell.body) + 1 << ": the element centred at (" << cell.centre
+                << ") in the reference configuration is turned inside out, det F = " << det_F[v];
+        return message.str();
+      }
+    return "";
+  }
+
+  void SolidAssembler::Scratch::scatter(const Batch &batch, BlockCsrMatrix *const tangent)
+  {
+    for (unsigned int v = 0; v < batch.size; ++v)
+    {
+      const unsigned int        c    = batch.first + v;
+      const unsigned int *const node = cell_nodes.data() + c * n_nodes;
+      if (loads.act_on(c))
+        add_loads(c, v, tangent);
+      if (is_constrained(c))
+      {
+        add_constrained(c, v, tangent);
+        continue;
+      }
+      for (unsigned int i = 0; i < dim * n_nodes; ++i)
+        at_nodes.internal[dim * node[i / dim] + i % dim] += at_lanes.force[i][v];
+      if (!tangent)
+        continue;
+      eliminate_prescribed(c, v);
+      add_stiffness(c, v, *tangent);
+    }
+  }
+
+  void SolidAssembler::Scratch::copy_sums(Vector &internal, Vector &external, Vector *const rhs) const
+  {
+    const auto copy = [&](const std::vector<double> &values, Vector &v)
+    {
+      if (v.locally_owned_elements() != dof_handler.locally_owned_dofs())
+        v.reinit(dof_handler.locally_owned_dofs(), dof_handler.get_communicator());
+      std::copy_n(values.begin(), dim * nodes->n_owned(), v.trilinos_vector()[0]);
+    };
+    copy(at_nodes.internal, internal);
+    copy(at_nodes.external, external);
+    if (rhs)
+      copy(at_nodes.rhs, *rhs);
   }
 
   void SolidAssembler::Scratch::sweep(const Vector                    &u,
@@ -330,86 +398,37 @@ namespace Nodus
                                       BlockCsrMatrix                  *tangent,
                                       Vector                          *rhs)
   {
-    const auto set = [&](Vector &v, const std::vector<double> &values)
-    {
-      if (v.locally_owned_elements() != dof_handler.locally_owned_dofs())
-        v.reinit(dof_handler.locally_owned_dofs(), dof_handler.get_communicator());
-      std::copy_n(values.begin(), dim * nodes->n_owned(), v.trilinos_vector()[0]);
-    };
-    const auto set_all = [&]
-    {
-      set(internal, nodal_internal);
-      set(external, nodal_external);
-      if (rhs)
-        set(*rhs, nodal_rhs);
-    };
-
     if (is_last(u, t, constraints, tangent))
-      return set_all();
+      return copy_sums(internal, external, rhs);
     loads.evaluate(t);
     if (tangent)
       tangent->set_zero();
-    for (auto *v : {&nodal_internal, &nodal_external, &nodal_rhs})
+    for (auto *v : {&at_nodes.internal, &at_nodes.external, &at_nodes.rhs})
       std::fill(v->begin(), v->end(), 0.);
-
     note_prescribed(constraints);
 
     std::string failure;
     for (unsigned int n = 0; n < batches.size() && failure.empty(); ++n)
     {
       const Batch &batch = batches[n];
-      gather(batch, nodal_u, batch_u);
-      const bool goes_on = tangent && iterates > 0 && kernel(batch).has_own_unknowns();
-      if (goes_on)
-        gather(batch, nodal_u_before, batch_u_before);
+      gather(batch, at_nodes.u, at_lanes.u);
       if (tangent)
         prefetch(batch, *tangent);
       Lanes det_F;
       if (material(batch).is_rigid())
-        integrate_rigid(batch, det_F);
+        compute_rigid(batch, det_F);
       else
-        kernel(batch).integrate(points(batch),
-                                material(batch),
-                                batch_u.data(),
-                                goes_on ? batch_u_before.data() : nullptr,
-                                {committed.data() + batch.state, current.data() + batch.state},
-                                batch_force.data(),
-                                tangent ? batch_stiffness.data() : nullptr,
-                                det_F);
-      for (unsigned int v = 0; v < batch.size && failure.empty(); ++v)
-        if (!(det_F[v] > 0.))
-        {
-          const Cell        &cell = cells[batch.first + v];
-          std::ostringstream message;
-          message << "Body " << int(cell.body) + 1 << ": the element centred at (" << cell.centre
-                  << ") in the reference configuration is turned inside out, det F = " << det_F[v];
-          failure = message.str();
-        }
-      for (unsigned int v = 0; v < batch.size && failure.empty(); ++v)
-      {
-        const unsigned int        c    = batch.first + v;
-        const unsigned int *const node = cell_nodes.data() + c * n_nodes;
-        if (loads.act_on(c))
-          add_loads(c, v, tangent);
-        if (is_constrained(c))
-        {
-          add_constrained(c, v, tangent);
-          continue;
-        }
-        for (unsigned int i = 0; i < dim * n_nodes; ++i)
-          nodal_internal[dim * node[i / dim] + i % dim] += batch_force[i][v];
-        if (!tangent)
-          continue;
-        eliminate_prescribed(c, v);
-        scatter(c, v, *tangent);
-      }
+        compute(batch, tangent, det_F);
+      failure = turned_inside_out(batch, det_F);
+      if (failure.empty())
+        scatter(batch, tangent);
     }
     wait_for_all(dof_handler.get_communicator()); // the ranks at the contact have fewer cells
-    constrained.exchange(!failure.empty(), tangent, {nodal_internal, nodal_external, nodal_rhs});
+    constrained.exchange(!failure.empty(), tangent, {at_nodes.internal, at_nodes.external, at_nodes.rhs});
     for (unsigned int i = 0; i < dofs.size(); ++i)
-      nodal_rhs[i] = is_prescribed[i] ? 0. : nodal_rhs[i] + nodal_external[i] - nodal_internal[i];
+      at_nodes.rhs[i] = at_nodes.is_prescribed[i] ? 0. : at_nodes.rhs[i] + at_nodes.external[i] - at_nodes.internal[i];
 
-    set_all();
+    copy_sums(internal, external, rhs);
     if (!failure.empty())
     {
       forget_last();
@@ -419,7 +438,7 @@ namespace Nodus
     {
       ++iterates;
       if (std::any_of(kernels.begin(), kernels.end(), [](const auto &kernel) { return kernel->has_own_unknowns(); }))
-        nodal_u_before = nodal_u;
+        at_nodes.u_before = at_nodes.u;
     }
     throw_everywhere<SolverFailure>(failure, dof_handler.get_communicator(), SolverFailure::Kind::inverted_cell);
   }

@@ -7,6 +7,7 @@
 #include "bulk/solid_assembler.h"
 
 #include <algorithm>
+#include <string>
 
 namespace Nodus
 {
@@ -78,8 +79,8 @@ namespace Nodus
     /// The quadrature points of the cells of a batch, until the next call.
     const ElementKernel::QuadraturePoint *points(const Batch &batch)
     {
-      gather(batch, nodal_X, batch_X);
-      return kernel(batch).points(batch_X.data());
+      gather(batch, at_nodes.X, at_lanes.X);
+      return kernel(batch).points(at_lanes.X.data());
     }
     /// The next call begins a Newton iteration.
     void forget_iterates()
@@ -87,39 +88,64 @@ namespace Nodus
       iterates = 0;
     }
     unsigned int iterates = 0; ///< tangents since then
-    void         forget_last()
+    /// The next sweep is not the one before, whatever it is for.
+    void forget_last()
     {
-      last_tangent = nullptr;
+      last.tangent = nullptr;
     }
 
-    // at the local nodes
-    std::vector<double> nodal_X, nodal_u, nodal_u_before, nodal_internal, nodal_external, nodal_rhs, prescribed;
-    std::vector<char>   is_prescribed;
-    // of the batch at hand, as in ElementKernel::integrate()
-    std::vector<Lanes> batch_X, batch_u, batch_u_before, batch_force, batch_stiffness;
+    /// At the local nodes, [node][component].
+    struct AtNodes
+    {
+      std::vector<double> X, u, u_before; ///< position, displacement, that of the previous iterate
+      std::vector<double> internal, external, rhs;
+      std::vector<double> prescribed; ///< displacement where is_prescribed
+      std::vector<char>   is_prescribed;
+    } at_nodes;
+    /// Of the batch at hand, as in ElementKernel::integrate().
+    struct AtLanes
+    {
+      std::vector<Lanes> X, u, u_before, force, stiffness;
+    } at_lanes;
 
   private:
     void add_initial_states(const Material &material);
+    void find_positions(const dealii::Mapping<dim> &mapping);
+
     bool
     is_last(const Vector &u, double t, const dealii::AffineConstraints<double> *constraints, BlockCsrMatrix *tangent);
     void note_prescribed(const dealii::AffineConstraints<double> *constraints);
-    void find_positions(const dealii::Mapping<dim> &mapping);
-    void integrate_rigid(const Batch &batch, Lanes &det_F);
-    void prefetch(const Batch &batch, BlockCsrMatrix &tangent) const;
+    /// Force and stiffness at the displacement in #at_lanes, the latter with @p with_stiffness, into the same.
+    void compute(const Batch &batch, bool with_stiffness, Lanes &det_F);
+    void compute_rigid(const Batch &batch, Lanes &det_F);
+    /// Message for a cell with det F <= 0, or nothing.
+    std::string turned_inside_out(const Batch &batch, const Lanes &det_F) const;
+    void        prefetch(const Batch &batch, BlockCsrMatrix &tangent) const;
+    /// What is in #at_lanes, with the loads on its cells, to the sums at the nodes and to the tangent.
+    void scatter(const Batch &batch, BlockCsrMatrix *tangent);
+    void copy_sums(Vector &internal, Vector &external, Vector *rhs) const;
+
     /// The cell in @p lane of the batch at hand.
     void add_loads(unsigned int cell, unsigned int lane, bool with_tangent);
     void add_constrained(unsigned int cell, unsigned int lane, BlockCsrMatrix *tangent);
     void eliminate_prescribed(unsigned int cell, unsigned int lane);
-    void scatter(unsigned int cell, unsigned int lane, BlockCsrMatrix &tangent) const;
+    void add_stiffness(unsigned int cell, unsigned int lane, BlockCsrMatrix &tangent) const;
     /// Entry of the stiffness: node a, component i; node b, component k.
     double &entry(unsigned int a, unsigned int i, unsigned int b, unsigned int k, unsigned int lane);
 
-    std::vector<double> last_conditions; ///< time and prescribed displacements of the last sweep
-    BlockCsrMatrix     *last_tangent = nullptr;
-    // of a cell with loads, or with hanging nodes
-    std::vector<double>        cell_u, cell_forces[2], cell_stiffness;
-    dealii::Vector<double>     cell_internal, cell_external;
-    dealii::FullMatrix<double> cell_tangent;
+    /// What the last sweep was for, besides the displacement.
+    struct LastSweep
+    {
+      std::vector<double> conditions; ///< time and prescribed displacements
+      BlockCsrMatrix     *tangent = nullptr;
+    } last;
+    /// Of a cell with loads, or with hanging nodes.
+    struct CellAtHand
+    {
+      std::vector<double>        u, forces[2], stiffness;
+      dealii::Vector<double>     internal, external; ///< of the loads, as is the tangent
+      dealii::FullMatrix<double> tangent;
+    } at_cell;
   };
 } // namespace Nodus
 

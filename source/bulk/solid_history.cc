@@ -123,9 +123,9 @@ namespace Nodus
       const auto         &batch    = s.batches[n];
       const Material     &material = s.material(batch);
       std::vector<double> state(material.n_state());
-      s.gather(batch, nodal_u, s.batch_u);
+      s.gather(batch, nodal_u, s.at_lanes.u);
       const ElementKernel::QuadraturePoint *const geometry = s.points(batch);
-      s.kernel(batch).deformation(geometry, material.small_strain(), s.batch_u.data(), F.data());
+      s.kernel(batch).deformation(geometry, material.small_strain(), s.at_lanes.u.data(), F.data());
       for (unsigned int v = 0; v < batch.size; ++v)
       {
         if (!s.cells[batch.first + v].owned)
