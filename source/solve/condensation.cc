@@ -106,7 +106,7 @@ namespace Nodus
     for (unsigned int i = 0; i < 3; ++i)
     {
       double square = 0.;
-      for (const Coupling &coupling : site.rows)
+      for (const NodeBlock &coupling : site.rows)
         square += coupling.block.row(i).squaredNorm();
       const double c         = C(i, i);
       const bool   rigid     = square > 0. && constraint_stiffness * std::abs(c) * site.diagonal <= square;
@@ -208,7 +208,7 @@ namespace Nodus
           if (const Row *row = rows_[node].get())
           {
             append(numbers, row->own);
-            for (const Coupling &other : row->others)
+            for (const NodeBlock &other : row->others)
             {
               numbers.push_back(other.node);
               append(numbers, other.block);
@@ -242,7 +242,7 @@ namespace Nodus
         n_owned += i < nodes_.n_owned();
         NodeRow &blocks = rows.emplace_back(i, NodeRow()).second;
         blocks.emplace_back(nodes_.global(i), by_rows(row->own));
-        for (const Coupling &other : row->others)
+        for (const NodeBlock &other : row->others)
           blocks.emplace_back(other.node, by_rows(other.block));
       }
     replaced_ = std::make_unique<BlockCsrRows>(system_.bulk(), std::move(replaced));
@@ -308,7 +308,7 @@ namespace Nodus
         y[k] = (constraint_inverse(site, site.n_constraints) * y[k]).eval();
     }
     if (cluster_)
-      solve_cluster(y, false);
+      cluster_->solve(y, false);
     for (unsigned int k = 0; k < sites_.size(); ++k)
     {
       const Eigen::Vector3d u = sites_[k].basis * y[k];
@@ -363,7 +363,7 @@ namespace Nodus
         force[k] = (constraint_inverse(site, site.n_constraints).transpose() * force[k]).eval();
     }
     if (cluster_)
-      solve_cluster(force, true);
+      cluster_->solve(force, true);
     for (unsigned int k = 0; k < sites_.size(); ++k)
       for (unsigned int d = 0; d < sites_[k].n_constraints; ++d)
         Eigen::Map<Eigen::Vector3d>(m + 3 * k) += force[k][d] * sites_[k].turn.col(sites_[k].combination[d]);

@@ -3,6 +3,7 @@
 
 #include "solve/block_csr_rows.h"
 #include "solve/constrained_matrix.h"
+#include "solve/node_block.h"
 #include "solve/saddle_point_operator.h"
 
 #include <deal.II/lac/trilinos_vector.h>
@@ -17,7 +18,7 @@
 
 namespace Nodus
 {
-  struct ConstraintCluster;
+  class ConstraintCluster;
 
   /// A system whose constraints do not give the displacements of the slave nodes: it needs another solver.
   class NotCondensable : public std::runtime_error
@@ -60,30 +61,25 @@ namespace Nodus
 
   private:
     using Matrix3 = Eigen::Matrix3d;
-    struct Coupling
-    {
-      DoFIndex node; ///< global
-      Matrix3  block;
-    };
     struct Site
     {
-      unsigned int          node;                  ///< local, owned
-      Matrix3               turn;                  ///< columns: combinations of the multipliers
-      Eigen::Vector3d       flexibility_inverse;   ///< 1/c of each combination, 0 for constraints
-      bool                  has_spring    = false; ///< a compliant row that is not zero
-      unsigned int          n_constraints = 0;     ///< the first directions of the basis
-      unsigned int          n_directions  = 0;     ///< with the stiff ones, which stay unknowns: jumps
-      unsigned int          combination[3];        ///< that gives each direction
-      Matrix3               basis;                 ///< columns
-      double                diagonal = 0.;         ///< mean diagonal stiffness of the node
-      bool                  coupled  = false;      ///< to constraints of other slave nodes
-      std::vector<Coupling> rows;                  ///< turned rows of B, the own node first
+      unsigned int           node;                  ///< local, owned
+      Matrix3                turn;                  ///< columns: combinations of the multipliers
+      Eigen::Vector3d        flexibility_inverse;   ///< 1/c of each combination, 0 for constraints
+      bool                   has_spring    = false; ///< a compliant row that is not zero
+      unsigned int           n_constraints = 0;     ///< the first directions of the basis
+      unsigned int           n_directions  = 0;     ///< with the stiff ones, which stay unknowns: jumps
+      unsigned int           combination[3];        ///< that gives each direction
+      Matrix3                basis;                 ///< columns
+      double                 diagonal = 0.;         ///< mean diagonal stiffness of the node
+      bool                   coupled  = false;      ///< to constraints of other slave nodes
+      std::vector<NodeBlock> rows;                  ///< turned rows of B, the own node first
     };
     /// Row of T: u = own y + sum of block y of others.
     struct Row
     {
-      Matrix3               own;
-      std::vector<Coupling> others;
+      Matrix3                own;
+      std::vector<NodeBlock> others;
     };
 
     void make_sites();
@@ -95,8 +91,6 @@ namespace Nodus
     void make_transformation();
     /// Inverse of the first @p n constraint rows along the basis, in a matrix that is zero beyond.
     Matrix3 constraint_inverse(const Site &site, unsigned int n) const;
-    /// Solves for the constraint displacements (transposed: forces) of the cluster, in place per site and direction.
-    void solve_cluster(std::vector<Eigen::Vector3d> &values, bool transposed) const;
 
     void apply_stiffness(double *m) const; ///< m = D m
     /// D of a site, with C_uu by what it is along the rows of B.

@@ -1,8 +1,92 @@
 #include "solve/condensation.h"
 #include "solve/constraint_cluster.h"
 
+#include <algorithm>
+
+// Constraints that see each other's slave nodes, and what multigrid is told of all.
+
 namespace Nodus
 {
+  void Condensation::find_coupled_sites()
+  {
+    std::map<unsigned int, Site *> site_of; // by local node
+    for (Site &site : sites_)
+      site_of[site.node] = &site;
+    const auto n_constraints = [&](const unsigned int node)
+    {
+      const auto found = site_of.find(node);
+      return found == site_of.end() ? 0u : found->second->n_constraints;
+    };
+
+    std::vector<DoFIndex> asked;
+    for (const Site &site : sites_)
+      if (site.n_constraints > 0)
+        for (const NodeBlock &coupling : site.rows)
+          asked.push_back(coupling.node);
+    std::sort(asked.begin(), asked.end());
+    asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
+    const auto constraints_of =
+        nodes_.ask(asked, [&](const unsigned int node) { return std::vector<double>{double(n_constraints(node))}; });
+
+    std::vector<DoFIndex> touched;
+    for (Site &site : sites_)
+      for (unsigned int k = 1; k < site.rows.size() && site.n_constraints > 0; ++k)
+        if (constraints_of.at(site.rows[k].node)[0] > 0.)
+        {
+          bool acts = false;
+          for (unsigned int d = 0; d < site.n_constraints; ++d)
+            acts = acts || !site.rows[k].block.row(site.combination[d]).isZero(0.);
+          if (acts)
+          {
+            site.coupled = true;
+            touched.push_back(site.rows[k].node);
+          }
+        }
+    nodes_.ask(touched,
+               [&](const unsigned int node)
+               {
+                 site_of.at(node)->coupled = true;
+                 return std::vector<double>();
+               });
+    for (Site &site : sites_)
+      if (site.coupled)
+        site.n_directions = site.n_constraints;
+  }
+
+  /// Eliminates the constraints of coupled sites together.
+  void Condensation::make_cluster()
+  {
+    std::vector<ConstraintCluster::Member> members;
+    for (unsigned int k = 0; k < sites_.size(); ++k)
+    {
+      const Site &site = sites_[k];
+      if (!site.coupled)
+        continue;
+      members.push_back({k, nodes_.global(site.node), site.n_constraints, site.basis, {}});
+      for (const NodeBlock &coupling : site.rows)
+      {
+        Matrix3 rows = Matrix3::Zero();
+        for (unsigned int d = 0; d < site.n_constraints; ++d)
+          rows.row(d) = coupling.block.row(site.combination[d]);
+        members.back().rows.push_back({coupling.node, rows});
+      }
+    }
+    cluster_ = ConstraintCluster::make(members, nodes_.communicator());
+    if (!cluster_)
+      return;
+    if (!cluster_->regular())
+      throw NotCondensable("the constraints of neighbouring slave nodes depend on each other");
+    for (const auto &member : members)
+      if (Row *const row = rows_[sites_[member.site].node].get())
+      {
+        for (const auto &[node, block] : cluster_->substitution(member))
+          if (node == member.node)
+            row->own += block;
+          else
+            row->others.push_back({node, block});
+      }
+  }
+
   Condensation::Matrix3 Condensation::stiffness_along_rows(const Site &site) const
   {
     const Matrix3 D        = site.flexibility_inverse.asDiagonal();
@@ -26,7 +110,7 @@ namespace Nodus
     std::map<DoFIndex, Matrix3> rows;
     const auto                  add = [&](const DoFIndex node, const Matrix3 &block)
     { rows.try_emplace(node, Matrix3::Zero()).first->second += block; };
-    for (const Coupling &coupling : site.rows)
+    for (const NodeBlock &coupling : site.rows)
     {
       const unsigned int local = nodes_.local(coupling.node);
       const Row         *row   = local == dealii::numbers::invalid_unsigned_int ? nullptr : rows_[local].get();
@@ -36,7 +120,7 @@ namespace Nodus
         continue;
       }
       add(coupling.node, coupling.block * row->own);
-      for (const Coupling &other : row->others)
+      for (const NodeBlock &other : row->others)
         add(other.node, coupling.block * other.block);
     }
     NodeRow result;

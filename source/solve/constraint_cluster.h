@@ -1,47 +1,71 @@
 #ifndef nodus_solve_constraint_cluster_h
 #define nodus_solve_constraint_cluster_h
 
-#include <nodus/base/types.h>
+#include "solve/node_block.h"
 
-#include <Eigen/Dense>
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 
-#include <array>
+#include <mpi.h>
+
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace Nodus
 {
   /// Constraints of slave nodes that see each other's displacements, all of them known to every rank: with their
-  /// displacements y_c along the constraints, M y_c + R y = g, R in terms of the other unknowns.
-  struct ConstraintCluster
+  /// displacements y_c along the constraints, M y_c + R y = g, R in terms of the other unknowns y.
+  class ConstraintCluster
   {
-    std::map<DoFIndex, unsigned int>                                  first;  ///< row of a node's first constraint
-    std::vector<std::vector<std::pair<DoFIndex, Eigen::RowVector3d>>> others; ///< R, row by row
-    Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> M, M_transposed;
-    unsigned int                                                             size    = 0;
-    unsigned int                                                             n_ranks = 0; ///< that own such nodes
-  };
+  public:
+    /// A slave node with constraints.
+    struct Member
+    {
+      unsigned int           site; ///< number on its rank
+      DoFIndex               node; ///< global
+      unsigned int           n_constraints;
+      Eigen::Matrix3d        basis; ///< of the displacement; the first columns are those along the constraints
+      std::vector<NodeBlock> rows;  ///< one row for each constraint, zero beyond
+    };
 
-  /// Blocks as numbers, on their way to other ranks.
-  inline void append(std::vector<double> &numbers, const Eigen::Matrix3d &block)
-  {
-    numbers.insert(numbers.end(), block.data(), block.data() + 9);
-  }
-  inline std::array<double, 9> by_rows(const Eigen::Matrix3d &block)
-  {
-    std::array<double, 9> result;
-    Eigen::Map<Eigen::Matrix<double, dim, dim, Eigen::RowMajor>>(result.data()) = block;
-    return result;
-  }
-  inline Eigen::Matrix3d read(const double *&numbers)
-  {
-    const Eigen::Matrix3d block = Eigen::Map<const Eigen::Matrix3d>(numbers);
-    numbers += 9;
-    return block;
-  }
+    /// Of the members @p mine of all ranks; null when there are none. Collective.
+    static std::unique_ptr<ConstraintCluster> make(const std::vector<Member> &mine, MPI_Comm communicator);
+
+    /// Whether the constraints give y_c: none of them follows from the others. The same on all ranks.
+    bool regular() const;
+
+    /// The displacement of a member along its constraints in terms of the other unknowns, where g vanishes: its rows of
+    /// -basis M^-1 R, by global node. Entries of M^-1 that are round-off of the largest in their row are left out.
+    std::map<DoFIndex, Eigen::Matrix3d> substitution(const Member &member) const;
+
+    /// Solves M y_c = g, or @p transposed M^T y_c = g; in place per site of this rank and constraint, other values are
+    /// left alone. Collective.
+    void solve(std::vector<Eigen::Vector3d> &values, bool transposed) const;
+
+  private:
+    using Matrix = Eigen::SparseMatrix<double>;
+    using LU     = Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>;
+
+    ConstraintCluster(const std::vector<Member> &mine, MPI_Comm communicator);
+    void   collect(const std::vector<Member> &mine);
+    Matrix assemble();
+
+    /// Place of a member of this rank.
+    struct Own
+    {
+      unsigned int site, first, n_constraints;
+    };
+    const MPI_Comm                                                    communicator_;
+    std::vector<Member>                                               members_; ///< of all ranks, while M is made
+    std::map<DoFIndex, unsigned int>                                  first_;   ///< row of a node's first constraint
+    std::vector<Own>                                                  own_;
+    std::vector<std::vector<std::pair<DoFIndex, Eigen::RowVector3d>>> R_; ///< row by row
+    LU                                                                M_, M_transposed_;
+    unsigned int                                                      size_    = 0; ///< number of constraints
+    unsigned int                                                      n_ranks_ = 0; ///< that have members
+  };
 } // namespace Nodus
 
 #endif
