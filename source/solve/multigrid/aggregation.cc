@@ -1,5 +1,6 @@
 #include "solve/multigrid/aggregation.h"
 #include "solve/mode_panel.h"
+#include "solve/multigrid/galerkin_product.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -28,12 +29,12 @@ namespace Nodus
     aggregate(K, modes);
     make_tentative(std::move(modes));
     smooth(K, D_inverse, omega);
-    exchange_ = GhostExchange::numbered_through(starts_, ghosts_, nodes_.communicator());
-    ghost_values_.resize(n_modes * ghosts_.size());
+    exchange_ = GhostExchange::numbered_through(P_.aggregates.starts, P_.aggregates.ghosts, nodes_.communicator());
+    ghost_values_.resize(n_modes * P_.aggregates.ghosts.size());
     for (std::uint32_t i = 0; i < nodes_.n_owned(); ++i)
-      if (std::any_of(column_.begin() + start_[i],
-                      column_.begin() + start_[i + 1],
-                      [this](const std::uint32_t a) { return a >= n_aggregates_; }))
+      if (std::any_of(P_.column.begin() + P_.start[i],
+                      P_.column.begin() + P_.start[i + 1],
+                      [this](const std::uint32_t a) { return a >= P_.aggregates.n_owned; }))
         interface_.push_back(i);
   }
 
@@ -41,7 +42,8 @@ namespace Nodus
   /// not mix: they slide on each other. Nodes without modes are prescribed and stay out.
   void Aggregation::aggregate(const BlockCsrMatrix &K, const std::vector<double> &modes)
   {
-    const unsigned int n = nodes_.n_owned();
+    const unsigned int n            = nodes_.n_owned();
+    unsigned int      &n_aggregates = P_.aggregates.n_owned;
     std::vector<char>  moves(n, 0);
     for (unsigned int m = 0; m < n_modes; ++m)
       for (unsigned int i = 0; i < dim * n; ++i)
@@ -60,14 +62,14 @@ namespace Nodus
     };
     const auto start = [&](const unsigned int i)
     {
-      aggregate_[i] = n_aggregates_;
+      aggregate_[i] = n_aggregates;
       for_neighbours(i,
                      [&](const unsigned int j)
                      {
                        if (aggregate_[j] == none)
-                         aggregate_[j] = n_aggregates_;
+                         aggregate_[j] = n_aggregates;
                      });
-      ++n_aggregates_;
+      ++n_aggregates;
     };
 
     for (unsigned int i = 0; i < n; ++i)
@@ -79,7 +81,7 @@ namespace Nodus
           start(i);
       }
 
-    const unsigned int        n_first = n_aggregates_;
+    const unsigned int        n_first = n_aggregates;
     std::vector<unsigned int> size(n_first, 0);
     for (const unsigned int a : aggregate_)
       if (a != none)
@@ -110,23 +112,25 @@ namespace Nodus
       if (moves[i] && aggregate_[i] == none)
         start(i);
 
-    starts_.assign(1, 0);
-    for (const unsigned int n_there : dealii::Utilities::MPI::all_gather(nodes_.communicator(), n_aggregates_))
-      starts_.push_back(starts_.back() + n_there);
-    first_ = starts_[dealii::Utilities::MPI::this_mpi_process(nodes_.communicator())];
+    std::vector<DoFIndex> &starts = P_.aggregates.starts;
+    starts.assign(1, 0);
+    for (const unsigned int n_there : dealii::Utilities::MPI::all_gather(nodes_.communicator(), n_aggregates))
+      starts.push_back(starts.back() + n_there);
+    P_.aggregates.first = starts[dealii::Utilities::MPI::this_mpi_process(nodes_.communicator())];
   }
 
   /// Gram-Schmidt on the modes of each aggregate; what it takes off are the modes in the coarse unknowns.
   void Aggregation::make_tentative(std::vector<double> modes)
   {
-    const unsigned int                     n = dim * nodes_.n_owned(), n_coarse = n_modes * n_aggregates_;
-    std::vector<std::vector<unsigned int>> dofs(n_aggregates_);
+    const unsigned int                     n_aggregates = P_.aggregates.n_owned;
+    const unsigned int                     n = dim * nodes_.n_owned(), n_coarse = n_modes * n_aggregates;
+    std::vector<std::vector<unsigned int>> dofs(n_aggregates);
     for (unsigned int i = 0; i < n; ++i)
       if (aggregate_[i / dim] != none)
         dofs[aggregate_[i / dim]].push_back(i);
     tentative_ = std::move(modes);
     coarse_modes_.assign(std::max(1U, n_modes * n_coarse), 0.);
-    for (unsigned int a = 0; a < n_aggregates_; ++a)
+    for (unsigned int a = 0; a < n_aggregates; ++a)
     {
       const auto product = [&](const unsigned int k, const unsigned int l)
       {
@@ -165,19 +169,25 @@ namespace Nodus
         f(i);
   }
 
+  std::unique_ptr<BlockCsrMatrix> Aggregation::make_coarse_matrix(const BlockCsrMatrix &K) const
+  {
+    return galerkin_product(K, A_, P_);
+  }
+
   void Aggregation::restrict_to(double *const coarse, const double *const fine) const
   {
-    std::fill_n(coarse, n_modes * n_aggregates_, 0.);
+    const unsigned int n_aggregates = P_.aggregates.n_owned;
+    std::fill_n(coarse, n_modes * n_aggregates, 0.);
     std::fill(ghost_values_.begin(), ghost_values_.end(), 0.);
     double *const ghosts  = ghost_values_.data();
     const auto    add_row = [&](const std::uint32_t i)
     {
-      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+      for (std::uint32_t k = P_.start[i]; k < P_.start[i + 1]; ++k)
       {
-        const float *const p = blocks_.data() + block_size * std::size_t(k);
+        const float *const p = P_.block(k);
         __builtin_prefetch(p + block_size * ahead);
-        const std::uint32_t a      = column_[k];
-        double *const       values = a < n_aggregates_ ? coarse + n_modes * a : ghosts + n_modes * (a - n_aggregates_);
+        const std::uint32_t a      = P_.column[k];
+        double *const       values = a < n_aggregates ? coarse + n_modes * a : ghosts + n_modes * (a - n_aggregates);
         Modes               sum    = Modes::load(values);
         for (unsigned int c = 0; c < dim; ++c)
           sum.add_product(Modes::load(p + n_modes * c), fine[dim * i + c]);
@@ -193,16 +203,17 @@ namespace Nodus
 
   void Aggregation::add_prolongation(double *const fine, const double *const coarse) const
   {
-    const double *const ghosts  = ghost_values_.data();
-    const auto          add_row = [&](const std::uint32_t i)
+    const unsigned int  n_aggregates = P_.aggregates.n_owned;
+    const double *const ghosts       = ghost_values_.data();
+    const auto          add_row      = [&](const std::uint32_t i)
     {
       Modes sum[dim] = {};
-      for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
+      for (std::uint32_t k = P_.start[i]; k < P_.start[i + 1]; ++k)
       {
-        const float *const p = blocks_.data() + block_size * std::size_t(k);
+        const float *const p = P_.block(k);
         __builtin_prefetch(p + block_size * ahead);
-        const std::uint32_t a = column_[k];
-        const Modes x = Modes::load(a < n_aggregates_ ? coarse + n_modes * a : ghosts + n_modes * (a - n_aggregates_));
+        const std::uint32_t a = P_.column[k];
+        const Modes x = Modes::load(a < n_aggregates ? coarse + n_modes * a : ghosts + n_modes * (a - n_aggregates));
         for (unsigned int c = 0; c < dim; ++c)
           sum[c].add_product(Modes::load(p + n_modes * c), x);
       }

@@ -2,8 +2,7 @@
 #define nodus_solve_multigrid_aggregation_h
 
 #include "solve/constrained_matrix.h"
-
-#include <Eigen/Core>
+#include "solve/multigrid/prolongation.h"
 
 #include <array>
 #include <memory>
@@ -41,10 +40,10 @@ namespace Nodus
     /// fine += P coarse. Collective.
     void add_prolongation(double *fine, const double *coarse) const;
 
-    static constexpr unsigned int n_modes = 6;
+    static constexpr unsigned int n_modes = Prolongation::n_modes;
 
   private:
-    static constexpr unsigned int block_size = dim * n_modes;
+    static constexpr unsigned int block_size = Prolongation::block_size;
 
     void aggregate(const BlockCsrMatrix &K, const std::vector<double> &modes);
     void make_tentative(std::vector<double> modes);
@@ -53,28 +52,13 @@ namespace Nodus
     /// Calls f(row) for those without columns of other ranks.
     template <typename Function>
     void for_interior_rows(const Function &f) const;
-    bool owned(const DoFIndex aggregate) const
-    {
-      return aggregate >= first_ && aggregate < first_ + n_aggregates_;
-    }
-    DoFIndex global_aggregate(const unsigned int a) const
-    {
-      return a < n_aggregates_ ? first_ + a : ghosts_[a - n_aggregates_];
-    }
 
-    const ConstrainedMatrix  &A_;
-    const NodeMap            &nodes_;
-    unsigned int              n_aggregates_ = 0; ///< owned
-    std::vector<DoFIndex>     starts_;           ///< of the aggregates of each rank, and the number of all
-    DoFIndex                  first_ = 0;
-    std::vector<DoFIndex>     ghosts_;    ///< aggregates of other ranks, ascending
-    std::vector<unsigned int> aggregate_; ///< of the owned nodes, or invalid
-    std::vector<double>       tentative_; ///< like modes; while P is made
-    std::vector<double>       coarse_modes_;
-    // P: per entry a local aggregate and three displacements by six modes, row by row. Single precision halves what a
-    // cycle reads; P^T A P belongs to the rounded P.
-    std::vector<std::uint32_t>  start_, column_;
-    std::vector<float>          blocks_;
+    const ConstrainedMatrix    &A_;
+    const NodeMap              &nodes_;
+    Prolongation                P_;
+    std::vector<unsigned int>   aggregate_; ///< of the owned nodes, or invalid
+    std::vector<double>         tentative_; ///< like modes; while P is made
+    std::vector<double>         coarse_modes_;
     std::vector<std::uint32_t>  interface_; ///< rows with columns of other ranks
     GhostExchange               exchange_;
     mutable std::vector<double> ghost_values_; ///< six per ghost

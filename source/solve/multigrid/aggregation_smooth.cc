@@ -178,29 +178,25 @@ namespace Nodus
   void
   Aggregation::smooth(const BlockCsrMatrix &K, const std::vector<std::array<double, 9>> &D_inverse, const double omega)
   {
-    const unsigned int               n_owned = nodes_.n_owned();
-    Tentative                        P_0     = at_local_nodes(A_, tentative_, aggregate_, first_);
+    const unsigned int               n_owned    = nodes_.n_owned();
+    Aggregates                      &aggregates = P_.aggregates;
+    Tentative                        P_0        = at_local_nodes(A_, tentative_, aggregate_, aggregates.first);
     std::map<unsigned int, PanelRow> constrained;
     if (A_.constrained())
       constrained = constrained_rows(A_, K, P_0);
     tentative_ = std::vector<double>();
 
     for (const DoFIndex a : P_0.aggregates)
-      if (!owned(a))
-        ghosts_.push_back(a);
+      if (!aggregates.owned(a))
+        aggregates.ghosts.push_back(a);
     for (const auto &[i, row] : constrained)
       for (const auto &[a, panel] : row)
-        if (!owned(a))
-          ghosts_.push_back(a);
-    make_unique_ascending(ghosts_);
-    const auto local = [&](const DoFIndex a) -> unsigned int
-    {
-      return owned(a) ? a - first_
-                      : n_aggregates_ + (std::lower_bound(ghosts_.begin(), ghosts_.end(), a) - ghosts_.begin());
-    };
+        if (!aggregates.owned(a))
+          aggregates.ghosts.push_back(a);
+    make_unique_ascending(aggregates.ghosts);
     std::vector<unsigned int> local_column;
     for (const DoFIndex a : P_0.aggregates)
-      local_column.push_back(local(a));
+      local_column.push_back(aggregates.local(a));
     for (unsigned int &column : P_0.column)
       column = column == none ? none : local_column[column];
     for (auto &[z, T_row] : P_0.replaced)
@@ -209,12 +205,12 @@ namespace Nodus
     find_unreplaced(A_, P_0);
 
     SparseRow row;
-    row.reinit(n_aggregates_ + ghosts_.size());
-    start_.assign(1, 0);
+    row.reinit(aggregates.size());
+    P_.start.assign(1, 0);
     // enough but for few nodes; pages that are not touched take no memory, growing and shrinking would take twice as
     // much
-    column_.reserve(5 * n_owned);
-    blocks_.reserve(5 * block_size * n_owned + 2);
+    P_.column.reserve(5 * n_owned);
+    P_.blocks.reserve(5 * block_size * n_owned + 2);
     for (unsigned int i = 0; i < n_owned; ++i)
     {
       if (!A_.replacement(i))
@@ -224,7 +220,7 @@ namespace Nodus
       if (const auto more = constrained.find(i); more != constrained.end())
         for (const auto &[a, panel] : more->second)
           for (unsigned int c = 0; c < dim; ++c)
-            row[local(a)].row[c] += panel.row[c];
+            row[aggregates.local(a)].row[c] += panel.row[c];
       const unsigned int own = P_0.column[i];
       if (own != none)
         row[own];
@@ -242,12 +238,12 @@ namespace Nodus
         }
         if (std::all_of(block, block + block_size, [](const float value) { return value == 0.F; }))
           continue;
-        column_.push_back(a);
-        blocks_.insert(blocks_.end(), block, block + block_size);
+        P_.column.push_back(a);
+        P_.blocks.insert(P_.blocks.end(), block, block + block_size);
       }
       row.clear();
-      start_.push_back(column_.size());
+      P_.start.push_back(P_.column.size());
     }
-    blocks_.resize(blocks_.size() + 2, 0.F); // for load()
+    P_.blocks.resize(P_.blocks.size() + 2, 0.F); // for load()
   }
 } // namespace Nodus
