@@ -2,13 +2,11 @@
 #include "contact/master_request.h"
 #include "mesh/region.h"
 #include "parallel/owned_values.h"
-#include "parallel/ownership.h"
 #include "parallel/sparse_exchange.h"
 #include "parallel/throw_everywhere.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe.h>
-#include <deal.II/lac/trilinos_vector.h>
 
 #include <algorithm>
 #include <set>
@@ -36,7 +34,7 @@ namespace Nodus
   {
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
-      has_points_.push_back(pairs[p].scheme == ContactPairParameters::Scheme::integration_point);
+      sites_.has_points.push_back(pairs[p].scheme == ContactPairParameters::Scheme::integration_point);
       directory_.collect(Region(pairs[p].slave, bodies, pair_label(pairs, p) + ", slave"), mapping, p, slave_side);
       rigid_masters_.push_back(pairs[p].has_rigid_master()
                                    ? std::make_unique<RigidSurface>(pairs[p].master_surface, pair_label(pairs, p))
@@ -60,7 +58,7 @@ namespace Nodus
     number_sites();
     make_layout(dof_handler.locally_owned_dofs());
 
-    fixed_mask_.reinit(layout_.owned[0], communicator_);
+    held_.mask.reinit(layout_.owned[0], communicator_);
     fetched_at_.reinit(layout_.owned[0], communicator_);
     std::vector<FaceRecord> own;
     for (unsigned int p = 0; p < pairs.size(); ++p)
@@ -100,7 +98,7 @@ namespace Nodus
         {
           const auto at = node_of_dof_.find(face.dofs[n][0]);
           slave         = at != node_of_dof_.end() &&
-                  (face.hangs(n) || (at->second < slave_nodes_.size() && slave_nodes_[at->second].pair == p));
+                  (face.hangs(n) || (at->second < sites_.nodes.size() && sites_.nodes[at->second].pair == p));
         }
         if (slave)
           return pair_label(pairs_, p) +
@@ -269,37 +267,17 @@ namespace Nodus
     }
     link_followers(records);
 
-    number_nodes();
+    std::vector<DoFIndex> numbers;
+    for (const SurfaceNode &node : nodes_)
+      numbers.push_back(node.dofs[0] / dim);
+    gather_.reinit(numbers, layout_.owned[0].n_elements() / dim, communicator_);
     gather_fixed();
-  }
-
-  /// Places of the nodes among the values of gather() and add().
-  void ContactSurfaces::number_nodes()
-  {
-    const Ownership owned(static_cast<unsigned int>(layout_.owned[0].n_elements() / dim), communicator_);
-    n_owned_nodes_                 = owned.end() - owned.begin();
-    const auto            is_owned = [&](const DoFIndex node) { return node >= owned.begin() && node < owned.end(); };
-    std::vector<DoFIndex> ghosts;
-    for (const SurfaceNode &node : nodes_)
-      if (const DoFIndex number = node.dofs[0] / dim; !is_owned(number))
-        ghosts.push_back(number);
-    std::sort(ghosts.begin(), ghosts.end());
-    place_.clear();
-    for (const SurfaceNode &node : nodes_)
-    {
-      const DoFIndex number = node.dofs[0] / dim;
-      place_.push_back(is_owned(number) ? number - owned.begin()
-                                        : n_owned_nodes_ + (std::lower_bound(ghosts.begin(), ghosts.end(), number) -
-                                                            ghosts.begin()));
-    }
-    node_exchange_ = GhostExchange::numbered_through(owned.start(), ghosts, communicator_);
-    ghost_values_.resize(dim * ghosts.size());
   }
 
   Point ContactSurfaces::site_position(const unsigned int site) const
   {
     if (!is_point(site))
-      return nodes_[slave_nodes_[site].node].X;
+      return nodes_[sites_.nodes[site].node].X;
     const SlavePoint &p = point(site);
     const FaceShape   shape(degree_, p.xi, p.eta);
     Point             X;
@@ -308,35 +286,9 @@ namespace Nodus
     return X;
   }
 
-  void ContactSurfaces::gather(const Vector &v, std::vector<Vector3> &nodal_values) const
-  {
-    const double *const owned = v.trilinos_vector()[0];
-    node_exchange_.fetch(owned, ghost_values_.data(), dim);
-    nodal_values.resize(nodes_.size());
-    for (unsigned int i = 0; i < nodes_.size(); ++i)
-    {
-      const double *const values = place_[i] < n_owned_nodes_
-                                       ? owned + dim * place_[i]
-                                       : ghost_values_.data() + dim * (place_[i] - n_owned_nodes_);
-      std::copy_n(values, dim, nodal_values[i].begin_raw());
-    }
-  }
-
-  void ContactSurfaces::add(const std::vector<Vector3> &nodal_values, Vector &v) const
-  {
-    double *const owned = v.trilinos_vector()[0];
-    for (unsigned int i = 0; i < nodes_.size(); ++i)
-      for (unsigned int c = 0; c < dim; ++c)
-        if (place_[i] < n_owned_nodes_)
-          owned[dim * place_[i] + c] += nodal_values[i][c];
-        else
-          ghost_values_[dim * (place_[i] - n_owned_nodes_) + c] = nodal_values[i][c];
-    node_exchange_.add(ghost_values_.data(), owned, dim);
-  }
-
   void ContactSurfaces::set_fixed(const dealii::AffineConstraints<double> &constraints)
   {
-    const OwnedValues mask(fixed_mask_);
+    const OwnedValues mask(held_.mask);
     for (const auto i : layout_.owned[0])
       mask(i) = is_prescribed(constraints, i) ? 1. : 0.;
     gather_fixed();
@@ -345,18 +297,18 @@ namespace Nodus
   void ContactSurfaces::gather_fixed()
   {
     std::vector<Vector3> nodal;
-    gather(fixed_mask_, nodal);
-    fixed_.resize(nodes_.size());
+    gather(held_.mask, nodal);
+    held_.fixed.resize(nodes_.size());
     for (unsigned int i = 0; i < nodes_.size(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
-        fixed_[i][c] = nodal[i][c] > 0.5;
+        held_.fixed[i][c] = nodal[i][c] > 0.5;
     find_rigid_nodes();
   }
 
   void ContactSurfaces::set_rigid_bodies(const std::vector<unsigned int> &numbers)
   {
-    rigid_number_   = numbers;
-    layout_.n_rigid = std::count_if(
+    held_.rigid_number = numbers;
+    layout_.n_rigid    = std::count_if(
         numbers.begin(), numbers.end(), [](const auto n) { return n != dealii::numbers::invalid_unsigned_int; });
     find_rigid_nodes();
   }
@@ -365,12 +317,14 @@ namespace Nodus
   {
     if (layout_.n_rigid == 0)
       return;
-    rigid_body_.assign(nodes_.size(), dealii::numbers::invalid_unsigned_int);
+    held_.rigid_body.assign(nodes_.size(), dealii::numbers::invalid_unsigned_int);
     const auto take = [&](const auto &nodes, const unsigned int body)
     {
       for (const unsigned int node : nodes)
-        expand(
-            node, 1., [&](const unsigned int free_node, double) { rigid_body_[free_node] = rigid_number_[body - 1]; });
+        expand(node,
+               1.,
+               [&](const unsigned int free_node, double)
+               { held_.rigid_body[free_node] = held_.rigid_number[body - 1]; });
     };
     for (unsigned int p = 0; p < pairs_.size(); ++p)
     {

@@ -3,6 +3,7 @@
 
 #include "contact/face_directory.h"
 #include "contact/surface_face.h"
+#include "contact/surface_gather.h"
 #include "mesh/bodies.h"
 #include "parallel/ghost_exchange.h"
 #include "rigid/rigid_surface.h"
@@ -97,77 +98,77 @@ namespace Nodus
     /// Those of this rank come first, in the order of their multipliers.
     const std::vector<SlaveNode> &slave_nodes() const
     {
-      return slave_nodes_;
+      return sites_.nodes;
     }
     /// Integration points of the pairs that have that scheme, face by face.
     const std::vector<SlavePoint> &slave_points() const
     {
-      return slave_points_;
+      return sites_.points;
     }
     /// Contact sites are the places with a jump, a frame and statuses: first the slave nodes, then the integration
     /// points.
     unsigned int n_sites() const
     {
-      return slave_nodes_.size() + slave_points_.size();
+      return sites_.nodes.size() + sites_.points.size();
     }
     bool is_point(const unsigned int site) const
     {
-      return site >= slave_nodes_.size();
+      return site >= sites_.nodes.size();
     }
     const SlavePoint &point(const unsigned int site) const
     {
-      return slave_points_[site - slave_nodes_.size()];
+      return sites_.points[site - sites_.nodes.size()];
     }
     unsigned int pair(const unsigned int site) const
     {
-      return is_point(site) ? point(site).pair : slave_nodes_[site].pair;
+      return is_point(site) ? point(site).pair : sites_.nodes[site].pair;
     }
     /// Slave nodes of a pair with integration points carry multipliers and frames, but no statuses.
     bool has_status(const unsigned int site) const
     {
-      return is_point(site) || !has_points_[slave_nodes_[site].pair];
+      return is_point(site) || !sites_.has_points[sites_.nodes[site].pair];
     }
     bool has_points(const unsigned int pair) const
     {
-      return has_points_[pair];
+      return sites_.has_points[pair];
     }
     /// Rank that projects and assembles a site.
     unsigned int site_owner(const unsigned int site) const
     {
       return is_point(site) ? slave_faces_[point(site).pair][point(site).face].owner
-                            : nodes_[slave_nodes_[site].node].owner;
+                            : nodes_[sites_.nodes[site].node].owner;
     }
     /// Reference position of a site.
     Point site_position(unsigned int site) const;
 
     unsigned int n_owned_slave_nodes() const
     {
-      return n_owned_slave_nodes_;
+      return sites_.n_owned_nodes;
     }
     /// This rank owns the site (site_owner); false for invalid numbers, too.
     bool is_owned(const unsigned int site) const
     {
-      return site < n_owned_slave_nodes_ || (is_point(site) && site < n_sites() && site_owner(site) == rank_);
+      return site < sites_.n_owned_nodes || (is_point(site) && site < n_sites() && site_owner(site) == rank_);
     }
     /// Number of the slave node's multiplier among those of all ranks (BlockLayout).
     DoFIndex multiplier(const unsigned int slave) const
     {
-      return multiplier_[slave];
+      return sites_.multiplier[slave];
     }
     /// Number of an owned site on the whole surface that does not depend on the ranks.
     DoFIndex order(const unsigned int site) const
     {
-      return order_[site];
+      return sites_.order[site];
     }
 
     /// Arrays over slave_nodes() and over the sites.
     const GhostExchange &slave_exchange() const
     {
-      return slave_exchange_;
+      return sites_.node_exchange;
     }
     const GhostExchange &site_exchange() const
     {
-      return site_exchange_;
+      return sites_.exchange;
     }
 
     const std::vector<SurfaceFace> &slave_faces(const unsigned int pair) const
@@ -186,7 +187,7 @@ namespace Nodus
     /// Index into slave_nodes() of a surface node, or invalid_unsigned_int.
     unsigned int slave_number(const unsigned int node) const
     {
-      return node < slave_nodes_.size() ? node : dealii::numbers::invalid_unsigned_int;
+      return node < sites_.nodes.size() ? node : dealii::numbers::invalid_unsigned_int;
     }
     /// Calls f(node, weight) for the free nodes that make up @p weight times the displacement of a node.
     template <typename Function>
@@ -238,20 +239,26 @@ namespace Nodus
     bool fetch_masters(const Vector &u);
 
     /// Values of a displacement-like vector (fully distributed) at all local nodes. Collective.
-    void gather(const Vector &v, std::vector<Vector3> &nodal_values) const;
+    void gather(const Vector &v, std::vector<Vector3> &nodal_values) const
+    {
+      gather_.gather(v, nodal_values);
+    }
     /// Adds what all ranks have for their local nodes to such a vector. Collective.
-    void add(const std::vector<Vector3> &nodal_values, Vector &v) const;
+    void add(const std::vector<Vector3> &nodal_values, Vector &v) const
+    {
+      gather_.add(nodal_values, v);
+    }
 
     /// Which components of which nodes are prescribed, those of hanging nodes when all that they follow are; whenever
     /// the constraints have changed. Collective.
     void set_fixed(const dealii::AffineConstraints<double> &constraints);
     bool fixed(const unsigned int node, const unsigned int component) const
     {
-      return fixed_[node][component];
+      return held_.fixed[node][component];
     }
     const std::vector<std::array<bool, dim>> &fixed() const
     {
-      return fixed_;
+      return held_.fixed;
     }
 
     /// The bodies that move as rigid bodies driven by forces: @p numbers by body, invalid for the others.
@@ -259,7 +266,7 @@ namespace Nodus
     /// Which of these a node belongs to, or invalid_unsigned_int.
     unsigned int rigid_body(const unsigned int node) const
     {
-      return rigid_body_.empty() ? dealii::numbers::invalid_unsigned_int : rigid_body_[node];
+      return held_.rigid_body.empty() ? dealii::numbers::invalid_unsigned_int : held_.rigid_body[node];
     }
     /// Calls f(flat index, weight) for the unknowns that move component @p c of a node: its own displacement, where
     /// that is free, or translation and spin of its rigid body, @p x being where the node is and @p centre those of the
@@ -305,9 +312,28 @@ namespace Nodus
     void        add_nodes(const FaceRecord &record);
     void        link_followers(const std::vector<FaceRecord> &records);
     SurfaceFace make_face(const FaceRecord &record) const;
-    void        number_nodes();
     void        gather_fixed();
     void        find_rigid_nodes();
+
+    /// The places with a jump, a frame and statuses, and what carries multipliers.
+    struct Sites
+    {
+      std::vector<SlaveNode>  nodes; ///< those of this rank first
+      unsigned int            n_owned_nodes = 0;
+      std::vector<SlavePoint> points;
+      std::vector<char>       has_points; ///< of each pair: its statuses are those of points
+      std::vector<DoFIndex>   multiplier; ///< of each slave node
+      std::vector<DoFIndex>   order;      ///< of each site, complete for owned ones
+      GhostExchange           node_exchange, exchange;
+    };
+    /// Displacements that are not unknowns of their own: prescribed ones, and those of driven rigid bodies.
+    struct Held
+    {
+      Vector                             mask; ///< 1 at prescribed degrees of freedom
+      std::vector<std::array<bool, dim>> fixed;
+      std::vector<unsigned int>          rigid_number; ///< by body
+      std::vector<unsigned int>          rigid_body;   ///< by node, empty without any
+    };
 
     const std::vector<ContactPairParameters>  &pairs_;
     MPI_Comm                                   communicator_;
@@ -316,25 +342,14 @@ namespace Nodus
     std::vector<SurfaceNode>                   nodes_;
     unsigned int                               n_slave_side_nodes_ = 0;
     std::unordered_map<DoFIndex, unsigned int> node_of_dof_;
-    std::vector<SlaveNode>                     slave_nodes_;
-    std::vector<SlavePoint>                    slave_points_;
-    std::vector<char>                          has_points_;
-    unsigned int                               n_owned_slave_nodes_ = 0;
-    std::vector<DoFIndex>                      multiplier_; ///< of each slave node
-    std::vector<DoFIndex>                      order_;      ///< of each site, complete for owned ones
-    GhostExchange                              slave_exchange_, site_exchange_;
+    Sites                                      sites_;
     std::vector<std::vector<SurfaceFace>>      slave_faces_, master_faces_;
     std::vector<std::unique_ptr<RigidSurface>> rigid_masters_; ///< of each pair, or nullptr
     std::vector<double>                        face_size_;
-    Vector                                     fixed_mask_, fetched_at_; ///< fetched_at_: displacement
-    std::vector<std::array<bool, dim>>         fixed_;
-    std::vector<unsigned int>                  rigid_number_, rigid_body_; ///< by body; by node, empty without any
+    Vector                                     fetched_at_; ///< displacement
+    Held                                       held_;
     BlockLayout                                layout_;
-    // for gather() and add():
-    std::vector<unsigned int>   place_;             ///< of each node: local number as for NodeMap, owned nodes first
-    unsigned int                n_owned_nodes_ = 0; ///< of the mesh
-    GhostExchange               node_exchange_;
-    mutable std::vector<double> ghost_values_;
+    SurfaceGather                              gather_;
   };
 } // namespace Nodus
 

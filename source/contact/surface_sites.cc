@@ -55,9 +55,9 @@ namespace Nodus
     for (const Place &place : places)
       if (nodes_.empty() || nodes_.back().dofs[0] != place.dof)
       {
-        slave_nodes_.push_back({static_cast<unsigned int>(nodes_.size()), place.pair});
+        sites_.nodes.push_back({static_cast<unsigned int>(nodes_.size()), place.pair});
         add_node(place.dof, place.X);
-        n_owned_slave_nodes_ += !place.ghost;
+        sites_.n_owned_nodes += !place.ghost;
       }
     for (const FaceRecord &record : records)
       add_nodes(record);
@@ -90,78 +90,78 @@ namespace Nodus
   {
     for (unsigned int p = 0; p < n_pairs(); ++p)
     {
-      if (!has_points_[p])
+      if (!sites_.has_points[p])
         continue;
       const dealii::Quadrature<2> rule = face_rule(pairs_[p], degree_);
       for (unsigned int f = 0; f < slave_faces_[p].size(); ++f)
         for (unsigned int q = 0; q < rule.size(); ++q)
-          slave_points_.push_back({p, f, rule.point(q)[0], rule.point(q)[1], rule.weight(q)});
+          sites_.points.push_back({p, f, rule.point(q)[0], rule.point(q)[1], rule.weight(q)});
     }
   }
 
   void ContactSurfaces::number_sites()
   {
-    order_.assign(n_sites(), std::numeric_limits<DoFIndex>::max());
+    sites_.order.assign(n_sites(), std::numeric_limits<DoFIndex>::max());
     DoFIndex     first_face = 0;
-    unsigned int site       = slave_nodes_.size();
+    unsigned int site       = sites_.nodes.size();
     for (unsigned int p = 0; p < n_pairs(); ++p)
     {
-      const unsigned int n_points = has_points_[p] ? face_rule(pairs_[p], degree_).size() : 0;
+      const unsigned int n_points = sites_.has_points[p] ? face_rule(pairs_[p], degree_).size() : 0;
       for (const SurfaceFace &face : slave_faces_[p])
       {
         const DoFIndex first = (first_face + face.number) * places_on_face;
         for (unsigned int n = 0; n < face.nodes.size(); ++n)
           if (const unsigned int k = slave_number(face.nodes[n]); k != dealii::numbers::invalid_unsigned_int)
-            order_[k] = std::min(order_[k], first + n);
+            sites_.order[k] = std::min(sites_.order[k], first + n);
         for (unsigned int q = 0; q < n_points; ++q)
-          order_[site++] = first + q;
+          sites_.order[site++] = first + q;
       }
       first_face += directory_.size(p, slave_side);
     }
 
     std::vector<DoFIndex>     key;
     std::vector<unsigned int> owner;
-    for (const SlaveNode &slave : slave_nodes_)
+    for (const SlaveNode &slave : sites_.nodes)
     {
       key.push_back(nodes_[slave.node].dofs[0]);
       owner.push_back(nodes_[slave.node].owner);
     }
-    slave_exchange_  = GhostExchange(key, owner, communicator_);
-    DoFIndex largest = 0;
-    for (const SlaveNode &slave : slave_nodes_)
+    sites_.node_exchange = GhostExchange(key, owner, communicator_);
+    DoFIndex largest     = 0;
+    for (const SlaveNode &slave : sites_.nodes)
       largest = std::max(largest, nodes_[slave.node].dofs[0]);
     largest = dealii::Utilities::MPI::max(largest, communicator_);
-    for (unsigned int s = slave_nodes_.size(); s < n_sites(); ++s)
+    for (unsigned int s = sites_.nodes.size(); s < n_sites(); ++s)
     {
-      key.push_back(largest + 1 + order_[s]);
+      key.push_back(largest + 1 + sites_.order[s]);
       owner.push_back(site_owner(s));
     }
-    site_exchange_ = GhostExchange(key, owner, communicator_);
+    sites_.exchange = GhostExchange(key, owner, communicator_);
   }
 
   void ContactSurfaces::make_layout(const dealii::IndexSet &owned_dofs)
   {
-    const auto counts = dealii::Utilities::MPI::all_gather(communicator_, n_owned_slave_nodes_);
+    const auto counts = dealii::Utilities::MPI::all_gather(communicator_, sites_.n_owned_nodes);
     DoFIndex   first = 0, n = 0;
     for (unsigned int r = 0; r < counts.size(); ++r)
     {
       first += r < rank_ ? counts[r] : 0;
       n += counts[r];
     }
-    multiplier_.assign(slave_nodes_.size(), 0);
-    for (unsigned int k = 0; k < n_owned_slave_nodes_; ++k)
-      multiplier_[k] = first + k;
-    slave_exchange_.update(multiplier_);
+    sites_.multiplier.assign(sites_.nodes.size(), 0);
+    for (unsigned int k = 0; k < sites_.n_owned_nodes; ++k)
+      sites_.multiplier[k] = first + k;
+    sites_.node_exchange.update(sites_.multiplier);
 
     layout_.communicator  = communicator_;
     layout_.n_u           = owned_dofs.size();
     layout_.n_slave_nodes = n;
-    for (unsigned int k = 0; k < n_owned_slave_nodes_; ++k)
+    for (unsigned int k = 0; k < sites_.n_owned_nodes; ++k)
       layout_.slave_nodes.push_back(nodes_[k].dofs[0] / dim);
     layout_.owned[0] = owned_dofs;
     layout_.owned[1].set_size(n);
-    layout_.owned[1].add_range(first, first + n_owned_slave_nodes_);
+    layout_.owned[1].add_range(first, first + sites_.n_owned_nodes);
     layout_.owned[2].set_size(2 * n);
-    layout_.owned[2].add_range(2 * first, 2 * (first + n_owned_slave_nodes_));
+    layout_.owned[2].add_range(2 * first, 2 * (first + sites_.n_owned_nodes));
   }
 } // namespace Nodus
