@@ -243,88 +243,104 @@ namespace Nodus
     blocks.offsets.clear();
   }
 
+  void GeometryTangent::add_face(const AveragedJump::Face &face,
+                                 const ContactResidual    &residual,
+                                 ProjectedPoint           &point,
+                                 Blocks                   &blocks) const
+  {
+    const SurfaceFace        &surface_face = surfaces_.slave_faces(face.pair)[face.face];
+    const auto               &slaves       = surface_face.slaves;
+    const unsigned int        n            = slaves.size();
+    const RigidSurface *const rigid        = geometry_.rigid[face.pair];
+    for (unsigned int q = 0; q < face.points.size(); ++q)
+    {
+      point.clear();
+      for (unsigned int a = 0; a < n; ++a)
+        if (const unsigned int k = slaves[a]; averaged_.covered(k) && is_active(residual, k))
+          point.sites.emplace_back(k, face.psi[n * q + a] / averaged_.row(k).area);
+      if (point.sites.empty())
+        continue;
+      const MortarPoint &p = face.points[q];
+      add_shape(surface_face, FaceShape(surfaces_.degree(), p.xi, p.eta).value, 1., point.motion);
+      if (rigid != nullptr)
+        project_on_rigid(*rigid, geometry_.slave[face.pair].at(face.face, p.xi, p.eta).x, point);
+      else
+        project(face.pair, p.master, point);
+      add_point(point, residual, blocks);
+      add_offset(0, face.face, p.xi, p.eta, point, blocks);
+      if (rigid == nullptr)
+        add_offset(1, p.master.face, p.master.xi, p.master.eta, point, blocks);
+    }
+    finish_offsets(face.pair, blocks);
+  }
+
+  void GeometryTangent::add_site(const unsigned int site, const ContactResidual &residual, Blocks &blocks) const
+  {
+    const unsigned int        p      = surfaces_.pair(site);
+    const RigidSurface *const rigid  = geometry_.rigid[p];
+    const Projection         &master = pairing_[site].master;
+    ProjectedPoint            point  = slave_point(site);
+    if (rigid != nullptr)
+      project_on_rigid(*rigid, geometry_.position(surfaces_, site), point);
+    else
+      project(p, master, point);
+    point.sites.emplace_back(site, 1.);
+    add_point(point, residual, blocks);
+    if (surfaces_.is_point(site))
+      add_offset(0, surfaces_.point(site).face, surfaces_.point(site).xi, surfaces_.point(site).eta, point, blocks);
+    if (rigid == nullptr)
+      add_offset(1, master.face, master.xi, master.eta, point, blocks);
+    finish_offsets(p, blocks);
+  }
+
+  void GeometryTangent::add_turn(const unsigned int     site,
+                                 const ContactState    &state,
+                                 const ContactResidual &residual,
+                                 Blocks                &blocks) const
+  {
+    // r turns with the normal: delta r = (r.n) delta n - n (r_tau . delta n)
+    const Vector3 n = pairing_[site].normal, r = residual.jump[site], jump = jump_.jump(site, state.x);
+    Matrix3       turn = -dealii::outer_product(n, r - (r * n) * n);
+    for (unsigned int c = 0; c < dim; ++c)
+      turn[c][c] += r * n;
+    for (const NodeDerivative &d : normal_derivative(site))
+    {
+      const Matrix3      value  = turn * d.value;
+      const unsigned int column = blocks.node(d.node);
+      for (const Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
+      {
+        const unsigned int row = blocks.node(e->node);
+        blocks.force[row * blocks.stride + column] += e->weight * value;
+      }
+      for (const auto &[k, coefficient] : gap_rows_[site])
+      {
+        const unsigned int row = blocks.slave(k);
+        blocks.gap[row * blocks.stride + column] += coefficient * (jump * d.value);
+      }
+    }
+  }
+
   void GeometryTangent::add(const ContactState &state, const ContactResidual &residual, LinearSystem &system) const
   {
-    const auto active = [&](const unsigned int site) { return residual.jump[site].norm_square() > 0.; };
-
     Sum            sum;
     Blocks         blocks;
     ProjectedPoint point; // kept: its lists are of the same lengths everywhere
     for (const AveragedJump::Face &face : averaged_.faces())
     {
       blocks.clear();
-      const auto        &slaves = surfaces_.slave_faces(face.pair)[face.face].slaves;
-      const unsigned int n      = slaves.size();
-      for (unsigned int q = 0; q < face.points.size(); ++q)
-      {
-        point.clear();
-        for (unsigned int a = 0; a < n; ++a)
-          if (const unsigned int k = slaves[a]; averaged_.covered(k) && active(k))
-            point.sites.emplace_back(k, face.psi[n * q + a] / averaged_.row(k).area);
-        if (point.sites.empty())
-          continue;
-        const MortarPoint &p = face.points[q];
-        add_shape(surfaces_.slave_faces(face.pair)[face.face],
-                  FaceShape(surfaces_.degree(), p.xi, p.eta).value,
-                  1.,
-                  point.motion);
-        const RigidSurface *const rigid = geometry_.rigid[face.pair];
-        if (rigid != nullptr)
-          project_on_rigid(*rigid, geometry_.slave[face.pair].at(face.face, p.xi, p.eta).x, point);
-        else
-          project(face.pair, p.master, point);
-        add_point(point, residual, blocks);
-        add_offset(0, face.face, p.xi, p.eta, point, blocks);
-        if (rigid == nullptr)
-          add_offset(1, p.master.face, p.master.xi, p.master.eta, point, blocks);
-      }
-      finish_offsets(face.pair, blocks);
+      add_face(face, residual, point, blocks);
       add_to(sum, blocks);
     }
-
     for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
     {
-      const unsigned int        p     = surfaces_.pair(s);
-      const RigidSurface *const rigid = geometry_.rigid[p];
-      if (!surfaces_.is_owned(s) || !active(s) || !(rigid != nullptr || pairing_[s].master.found()))
+      const unsigned int p = surfaces_.pair(s);
+      if (!surfaces_.is_owned(s) || !is_active(residual, s) ||
+          !(geometry_.rigid[p] != nullptr || pairing_[s].master.found()))
         continue;
       blocks.clear();
       if (pairs_[p].scheme != ContactPairParameters::Scheme::averaged)
-      {
-        ProjectedPoint point = slave_point(s);
-        if (rigid != nullptr)
-          project_on_rigid(*rigid, geometry_.position(surfaces_, s), point);
-        else
-          project(p, pairing_[s].master, point);
-        point.sites.emplace_back(s, 1.);
-        add_point(point, residual, blocks);
-        const Projection &master = pairing_[s].master;
-        if (surfaces_.is_point(s))
-          add_offset(0, surfaces_.point(s).face, surfaces_.point(s).xi, surfaces_.point(s).eta, point, blocks);
-        if (rigid == nullptr)
-          add_offset(1, master.face, master.xi, master.eta, point, blocks);
-        finish_offsets(p, blocks);
-      }
-      // r turns with the normal: delta r = (r.n) delta n - n (r_tau . delta n)
-      const Vector3 n = pairing_[s].normal, r = residual.jump[s], jump = jump_.jump(s, state.x);
-      Matrix3       turn = -dealii::outer_product(n, r - (r * n) * n);
-      for (unsigned int c = 0; c < dim; ++c)
-        turn[c][c] += r * n;
-      for (const NodeDerivative &d : normal_derivative(s))
-      {
-        const Matrix3      value  = turn * d.value;
-        const unsigned int column = blocks.node(d.node);
-        for (const Entry *e = jump_.begin(s); e != jump_.end(s); ++e)
-        {
-          const unsigned int row = blocks.node(e->node);
-          blocks.force[row * blocks.stride + column] += e->weight * value;
-        }
-        for (const auto &[k, coefficient] : gap_rows_[s])
-        {
-          const unsigned int row = blocks.slave(k);
-          blocks.gap[row * blocks.stride + column] += coefficient * (jump * d.value);
-        }
-      }
+        add_site(s, residual, blocks);
+      add_turn(s, state, residual, blocks);
       add_to(sum, blocks);
     }
     write(sum, state, system);

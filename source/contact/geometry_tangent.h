@@ -92,6 +92,19 @@ namespace Nodus
         unsigned int side, unsigned int face, double xi, double eta, const ProjectedPoint &point, Blocks &blocks) const;
     void finish_offsets(unsigned int pair, Blocks &blocks) const;
     void add_point(const ProjectedPoint &point, const ContactResidual &residual, Blocks &blocks) const;
+    /// Sliding of the points of a face (averaged scheme, @p point is scratch) and of a site with its own projection.
+    void add_face(const AveragedJump::Face &face,
+                  const ContactResidual    &residual,
+                  ProjectedPoint           &point,
+                  Blocks                   &blocks) const;
+    void add_site(unsigned int site, const ContactResidual &residual, Blocks &blocks) const;
+    /// Turning of the normal of a site.
+    void add_turn(unsigned int site, const ContactState &state, const ContactResidual &residual, Blocks &blocks) const;
+    /// Only sites that carry force have a variation.
+    static bool is_active(const ContactResidual &residual, const unsigned int site)
+    {
+      return residual.jump[site].norm_square() > 0.;
+    }
     /// The same of all nodes: force blocks by row node * number of nodes + column node, gap rows by slave likewise.
     struct Sum
     {
@@ -99,6 +112,7 @@ namespace Nodus
       std::unordered_map<std::uint64_t, Vector3> gap;
     };
     void add_to(Sum &sum, const Blocks &blocks) const;
+    class Writer;
     void write(const Sum &sum, const ContactState &state, LinearSystem &system) const;
 
     const std::vector<ContactPairParameters>                 &pairs_;

@@ -69,69 +69,106 @@ namespace Nodus
           sum.gap[blocks.slaves[r] * size + blocks.nodes[c]] += value;
   }
 
-  void GeometryTangent::write(const Sum &sum, const ContactState &state, LinearSystem &system) const
+  /// Writes couplings of free nodes, and what prescribed displacements add to the right-hand side.
+  class GeometryTangent::Writer
   {
-    const BlockLayout  &layout = surfaces_.layout();
-    const auto         &nodes  = surfaces_.nodes();
-    const std::uint64_t size   = nodes.size();
-    system.variation.reserve(system.variation.row.size() + dim * dim * sum.force.size() + dim * sum.gap.size());
-    // what prescribed displacements add to the right-hand side
-    std::vector<Vector3> forces(nodes.size());
-    std::vector<double>  gaps(surfaces_.slave_nodes().size(), 0.);
-    const auto           is_inner = [&](const DoFIndex index) { return index < layout.size(); };
-    const auto           is_rigid = [&](const unsigned int node)
-    { return surfaces_.rigid_body(node) != dealii::numbers::invalid_unsigned_int; };
-    const auto add_force = [&](const unsigned int row, const unsigned int column, const Matrix3 &value)
+  public:
+    Writer(const ContactSurfaces &surfaces, const ContactState &state, LinearSystem &system)
+        : surfaces_(surfaces)
+        , layout_(surfaces.layout())
+        , state_(state)
+        , system_(system)
+        , forces_(surfaces.nodes().size())
+        , gaps_(surfaces.slave_nodes().size(), 0.)
+    {
+    }
+
+    void add_force(const unsigned int row, const unsigned int column, const Matrix3 &value)
     {
       for (unsigned int i = 0; i < dim; ++i)
         surfaces_.for_each_unknown(row,
                                    i,
-                                   state.x[row],
-                                   state.centre,
+                                   state_.x[row],
+                                   state_.centre,
                                    [&](const DoFIndex row_index, const double row_part)
                                    {
                                      for (unsigned int j = 0; j < dim; ++j)
                                      {
-                                       if (surfaces_.fixed(column, j) && !is_rigid(column))
+                                       if (is_prescribed(column, j))
                                        {
-                                         const double missing = row_part * value[i][j] * state.prescribed[column][j];
+                                         const double missing = row_part * value[i][j] * state_.prescribed[column][j];
                                          if (is_inner(row_index))
-                                           forces[row][i] -= missing;
+                                           forces_[row][i] -= missing;
                                          else
-                                           system.border_rhs[row_index - layout.size()] -= missing;
+                                           system_.border_rhs[row_index - layout_.size()] -= missing;
                                        }
                                        surfaces_.for_each_unknown(
                                            column,
                                            j,
-                                           state.x[column],
-                                           state.centre,
+                                           state_.x[column],
+                                           state_.centre,
                                            [&](const DoFIndex column_index, const double part)
-                                           {
-                                             (is_inner(row_index) && is_inner(column_index) ? system.variation
-                                                                                            : system.border)
-                                                 .add(row_index, column_index, row_part * part * value[i][j]);
-                                           });
+                                           { add(row_index, column_index, row_part * part * value[i][j]); });
                                      }
                                    });
-    };
-    const auto add_gap = [&](const unsigned int slave, const unsigned int column, const Vector3 &value)
+    }
+
+    void add_gap(const unsigned int slave, const unsigned int column, const Vector3 &value)
     {
+      const DoFIndex row = layout_.lambda(surfaces_.multiplier(slave));
       for (unsigned int j = 0; j < dim; ++j)
       {
-        if (surfaces_.fixed(column, j) && !is_rigid(column))
-          gaps[slave] -= value[j] * state.prescribed[column][j];
+        if (is_prescribed(column, j))
+          gaps_[slave] -= value[j] * state_.prescribed[column][j];
         else if (value[j] != 0.)
           surfaces_.for_each_unknown(column,
                                      j,
-                                     state.x[column],
-                                     state.centre,
+                                     state_.x[column],
+                                     state_.centre,
                                      [&](const DoFIndex index, const double part)
-                                     {
-                                       (is_inner(index) ? system.variation : system.border)
-                                           .add(layout.lambda(surfaces_.multiplier(slave)), index, part * value[j]);
-                                     });
+                                     { add(row, index, part * value[j]); });
       }
-    };
+    }
+
+    /// Collective.
+    void finish()
+    {
+      wait_for_all(layout_.communicator);
+      surfaces_.add(forces_, system_.rhs.block(0));
+      surfaces_.slave_exchange().sum(gaps_);
+      const OwnedValues rhs(system_.rhs.block(1));
+      for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
+        rhs(surfaces_.multiplier(k)) += gaps_[k];
+      system_.symmetric = false;
+    }
+
+  private:
+    bool is_inner(const DoFIndex index) const
+    {
+      return index < layout_.size();
+    }
+    bool is_prescribed(const unsigned int node, const unsigned int component) const
+    {
+      return surfaces_.fixed(node, component) && surfaces_.rigid_body(node) == dealii::numbers::invalid_unsigned_int;
+    }
+    void add(const DoFIndex row, const DoFIndex column, const double value)
+    {
+      (is_inner(row) && is_inner(column) ? system_.variation : system_.border).add(row, column, value);
+    }
+
+    const ContactSurfaces &surfaces_;
+    const BlockLayout     &layout_;
+    const ContactState    &state_;
+    LinearSystem          &system_;
+    std::vector<Vector3>   forces_; ///< for the right-hand side, per surface node
+    std::vector<double>    gaps_;   ///< likewise per slave node
+  };
+
+  void GeometryTangent::write(const Sum &sum, const ContactState &state, LinearSystem &system) const
+  {
+    const std::uint64_t size = surfaces_.nodes().size();
+    system.variation.reserve(system.variation.row.size() + dim * dim * sum.force.size() + dim * sum.gap.size());
+    Writer writer(surfaces_, state, system);
     for (const auto &[key, value] : sum.force)
       surfaces_.expand(key / size,
                        1.,
@@ -140,19 +177,13 @@ namespace Nodus
                          surfaces_.expand(column,
                                           row_part,
                                           [&](const unsigned int free_column, const double part)
-                                          { add_force(row, free_column, part * value); });
+                                          { writer.add_force(row, free_column, part * value); });
                        });
     for (const auto &[key, value] : sum.gap)
       surfaces_.expand(key % size,
                        1.,
                        [&, slave = key / size, &value = value](const unsigned int column, const double part)
-                       { add_gap(slave, column, part * value); });
-    wait_for_all(surfaces_.layout().communicator);
-    surfaces_.add(forces, system.rhs.block(0));
-    surfaces_.slave_exchange().sum(gaps);
-    const OwnedValues rhs(system.rhs.block(1));
-    for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
-      rhs(surfaces_.multiplier(k)) += gaps[k];
-    system.symmetric = false;
+                       { writer.add_gap(slave, column, part * value); });
+    writer.finish();
   }
 } // namespace Nodus
