@@ -22,6 +22,7 @@ namespace Nodus
     /// Covered fraction of a face at which psi starts to turn from the hats to the dual functions. The dual functions
     /// of a quadratic face keep positive integrals down to here.
     constexpr double dual_coverage = 0.75;
+    constexpr double dual_growth   = 1. / (1. - dual_coverage - 1e-8);
     /// Less of the node's surface than this has no partner worth a constraint.
     constexpr double smallest_coverage = 2e-2;
     /// Entries of the slave part below this are round-off of the biorthogonality.
@@ -45,20 +46,6 @@ namespace Nodus
 
     /// Vectors of each node in FaceRows.
     constexpr unsigned int n_vectors = 4 * dim;
-
-    /// Bilinear hats of the nodes: on the face, or on the quarters of one of degree 2.
-    Column hats(const unsigned int degree, const double xi, const double eta)
-    {
-      double s[2][3];
-      for (unsigned int d = 0; d < 2; ++d)
-        for (unsigned int i = 0; i <= degree; ++i)
-          s[d][i] = std::max(0., 1. - std::abs(degree * (d == 0 ? xi : eta) - i));
-      Column result((degree + 1) * (degree + 1));
-      for (unsigned int j = 0, n = 0; j <= degree; ++j)
-        for (unsigned int i = 0; i <= degree; ++i, ++n)
-          result[n] = s[0][i] * s[1][j];
-      return result;
-    }
 
     /// Points of a fixed rule with their closest master points; returns the covered fraction.
     double face_points(const SurfaceGeometry       &slave,
@@ -179,18 +166,17 @@ namespace Nodus
       {
       }
 
-      /// @p all_psi is overwritten.
-      FaceRows integrate(const std::vector<MortarPoint> &points, const double coverage, std::vector<double> &all_psi)
+      FaceRows integrate(const AveragedJump::Face &face)
       {
+        const std::vector<MortarPoint> &points = face.points;
         number_nodes(points);
-        make_dual_functions(points, coverage);
+        make_dual_functions(points, face.dual_part());
         n_columns_ = rows_.nodes.size() + 2;
         rows_.weights.assign(m_ * n_columns_, 0.);
         rows_.vectors.assign(n_vectors * m_, 0.);
-        all_psi.resize(m_ * points.size());
         for (unsigned int q = 0; q < points.size(); ++q)
-          add_point(points[q], weight_[q], all_psi.data() + m_ * q);
-        take_exact_areas(points.size(), all_psi);
+          add_point(points[q], weight_[q]);
+        take_exact_areas();
         return std::move(rows_);
       }
 
@@ -225,7 +211,7 @@ namespace Nodus
       }
 
       /// psi = part (D M^-1)^T phi + (1 - part) hat, with M and D over the covered part.
-      void make_dual_functions(const std::vector<MortarPoint> &points, const double coverage)
+      void make_dual_functions(const std::vector<MortarPoint> &points, const double part)
       {
         Matrix mass = Matrix::Zero(m_, m_);
         Column area = Column::Zero(m_);
@@ -238,19 +224,18 @@ namespace Nodus
           mass += weight_[q] * phi * phi.transpose();
           area += weight_[q] * phi;
         }
-        part_ = std::clamp((coverage - dual_coverage) / (1. - dual_coverage - 1e-8), 0., 1.);
+        part_ = part;
         dual_ = Matrix::Zero(m_, m_);
         if (part_ > 0.)
           dual_ = part_ * (mass.ldlt().solve(Matrix(area.asDiagonal()))).transpose();
       }
 
-      /// Writes psi of the slave nodes, times the weight, to @p all_psi.
-      void add_point(const MortarPoint &point, const double weight, double *const all_psi)
+      void add_point(const MortarPoint &point, const double weight)
       {
         const unsigned int degree = slave_.degree();
         const FaceShape    shape(degree, point.xi, point.eta);
         const Column       phi     = of_slaves(shape.value);
-        const Column       hat     = of_slaves(hats(degree, point.xi, point.eta));
+        const Column       hat     = of_slaves(AveragedJump::hats(degree, point.xi, point.eta));
         const Column       psi     = weight * (dual_ * phi + (1. - part_) * hat);
         const Partner      partner = rigid_ == nullptr ? meshed_partner(pair_, master_, point.master)
                                                        : rigid_partner(*rigid_, slave_.at(f_, point.xi, point.eta).x);
@@ -264,7 +249,6 @@ namespace Nodus
         for (unsigned int a = 0; a < m_; ++a)
         {
           double *const row = rows_.weights.data() + a * n_columns_;
-          all_psi[a]        = psi[a];
           for (unsigned int b = 0; b < n_; ++b)
             row[b] += psi[a] * shape.value[b];
           for (unsigned int b = 0; b < partner.n; ++b)
@@ -283,7 +267,7 @@ namespace Nodus
 
       /// The points on a curved face integrate its shape functions nearly, Gauss points to round-off: nodal areas of
       /// covered faces are those.
-      void take_exact_areas(const unsigned int n_points, std::vector<double> &all_psi)
+      void take_exact_areas()
       {
         static const dealii::QGauss<2> gauss(4);
         const unsigned int             degree = slave_.degree();
@@ -293,7 +277,7 @@ namespace Nodus
           const FaceShape shape(degree, gauss.point(q)[0], gauss.point(q)[1]);
           const double    area = gauss.weight(q) * element(shape);
           exact += area * of_slaves(shape.value);
-          full += area * of_slaves(hats(degree, gauss.point(q)[0], gauss.point(q)[1]));
+          full += area * of_slaves(AveragedJump::hats(degree, gauss.point(q)[0], gauss.point(q)[1]));
         }
         for (unsigned int a = 0; a < m_; ++a)
         {
@@ -305,8 +289,6 @@ namespace Nodus
               row[b] *= scale;
             for (unsigned int c = 0; c < n_vectors; ++c)
               rows_.vectors[n_vectors * a + c] *= c / dim == 1 ? 1. : scale; // normals become unit ones
-            for (unsigned int q = 0; q < n_points; ++q)
-              all_psi[m_ * q + a] *= scale;
           }
           row[n_columns_ - 1] = part_ * exact[a] + (1. - part_) * full[a];
         }
@@ -347,27 +329,6 @@ namespace Nodus
                         entries.push_back({free_node, part});
                       });
       offset += weight * surfaces.nodes()[node].offset;
-    }
-
-    /// Fills in the points of a face; returns its covered fraction.
-    double find_points(const ContactPairParameters &pair,
-                       const ContactGeometry       &geometry,
-                       const dealii::Quadrature<2> &rule,
-                       AveragedJump::Face          &face)
-    {
-      const unsigned int p = face.pair;
-      if (geometry.rigid[p] != nullptr)
-        return face_points(geometry, p, face.face, rule, face.points);
-      if (pair.integration == ContactPairParameters::Integration::segment)
-        return segment_points(
-            geometry.slave[p], face.face, geometry.master[p], geometry.search[p], geometry.reach[p], face.points);
-      return face_points(geometry.slave[p],
-                         face.face,
-                         rule,
-                         geometry.search[p],
-                         geometry.reach[p],
-                         pair.projection_tolerance,
-                         face.points);
     }
 
     /// Whoever owns a node sums over its faces, in an order that does not depend on the ranks. @p mine are those of @p
@@ -451,6 +412,46 @@ namespace Nodus
     }
   } // namespace
 
+  std::array<double, 9> AveragedJump::hats(const unsigned int degree, const double xi, const double eta)
+  {
+    double s[2][3];
+    for (unsigned int d = 0; d < 2; ++d)
+      for (unsigned int i = 0; i <= degree; ++i)
+        s[d][i] = std::max(0., 1. - std::abs(degree * (d == 0 ? xi : eta) - i));
+    std::array<double, 9> result{};
+    for (unsigned int j = 0, n = 0; j <= degree; ++j)
+      for (unsigned int i = 0; i <= degree; ++i, ++n)
+        result[n] = s[0][i] * s[1][j];
+    return result;
+  }
+
+  double AveragedJump::Face::dual_part() const
+  {
+    return std::clamp((coverage - dual_coverage) * dual_growth, 0., 1.);
+  }
+
+  double AveragedJump::Face::dual_slope() const
+  {
+    const double part = dual_part();
+    return part > 0. && part < 1. ? dual_growth : 0.;
+  }
+
+  void AveragedJump::find_points(const ContactPairParameters &pair,
+                                 const ContactGeometry       &geometry,
+                                 const dealii::Quadrature<2> &rule,
+                                 Face                        &face)
+  {
+    const unsigned int p = face.pair, f = face.face;
+    if (geometry.rigid[p] != nullptr)
+      face.coverage = face_points(geometry, p, f, rule, face.points);
+    else if (pair.integration == ContactPairParameters::Integration::segment)
+      face.coverage = segment_points(
+          geometry.slave[p], f, geometry.master[p], geometry.search[p], geometry.reach[p], face.points, face.trace);
+    else
+      face.coverage = face_points(
+          geometry.slave[p], f, rule, geometry.search[p], geometry.reach[p], pair.projection_tolerance, face.points);
+  }
+
   void AveragedJump::compute(const std::vector<ContactPairParameters> &pairs,
                              const ContactSurfaces                    &surfaces,
                              const ContactGeometry                    &geometry,
@@ -474,11 +475,11 @@ namespace Nodus
       {
         if (geometry.slave[p].face(f).owner != rank)
           continue;
-        faces_.push_back({p, f, {}, {}});
-        Face        &face     = faces_.back();
-        const double coverage = find_points(pairs[p], geometry, rule, face);
+        faces_.push_back({p, f, {}, {}, 0.});
+        Face &face = faces_.back();
+        find_points(pairs[p], geometry, rule, face);
         FaceIntegral integral(pairs[p], surfaces, geometry.slave[p], f, geometry.master[p], geometry.rigid[p], measure);
-        mine.push_back(integral.integrate(face.points, coverage, face.psi));
+        mine.push_back(integral.integrate(face));
         mine.back().pair = p;
       }
     }
