@@ -38,7 +38,7 @@ namespace
     Pair::Integration integration = Pair::Integration::segment;
     Shape             shape       = Shape::mesh; ///< of a rigid master
     bool              hanging     = false;       ///< nodes on both surfaces
-    bool              overhang    = false;       ///< of slave faces over the rim of the master
+    double            overhang    = 0.;          ///< of slave faces over the rim of the master [faces]
     double            degrees     = 0.;          ///< that both bodies turn
     unsigned int      degree      = 1;
     bool              orthotropic = false;
@@ -206,18 +206,21 @@ namespace
     fixture.pair_at(state.x);
     for (unsigned int k = 0; k < state.lambda.size(); ++k)
     {
-      const bool stick = kind.friction == Friction::stick || kind.friction == Friction::tied;
-      state.lambda[k]  = -(1. + 0.5 * random(generator));
+      const bool stick    = kind.friction == Friction::stick || kind.friction == Friction::tied;
       const double f   = kind.friction == Friction::none ? 0. : -0.3 * (1. + 0.3 * random(generator));
-      fixture.status->assign(k, fixture.pairing[k].found, stick, f);
+      // a node without a projection of its own has a normal averaged over its faces, whose variation is left out
+      const bool closed =
+          fixture.pairing[k].found && (kind.shape != Shape::mesh || fixture.pairing[k].master.found());
+      fixture.status->assign(k, closed, stick, f);
+      state.lambda[k] = closed ? -(1. + 0.5 * random(generator)) : 0.;
       for (double &component : state.Lambda[k])
-        component = kind.friction == Friction::none ? 0. : 0.5 * random(generator);
+        component = kind.friction == Friction::none || !closed ? 0. : 0.5 * random(generator);
     }
   }
 
   void measure(const Kind &kind)
   {
-    const double                upper = kind.overhang ? 0.55 : 0.13;
+    const double                upper = kind.overhang > 0. ? 0.3 + 0.4 * kind.overhang : 0.13;
     std::vector<BodyParameters> bodies{box("lower", "4,4,1", {-0.1, -0.1, 0}, {1.1, 1.1, 1}, 1, 0),
                                        box("upper", "2,2,1", {upper, 0.07, 1}, {upper + 0.8, 0.87, 2}, 1, 0)};
     if (kind.hanging)
@@ -310,7 +313,13 @@ namespace
       add({std::string("nodal, rigid ") + name, nodal, faceted}, "", [shape = shape](Kind &k) { k.shape = shape; });
     add(nodal_facets, ", hanging nodes", [](Kind &k) { k.hanging = true; });
     add({"nodal, smoothed", nodal, smoothed}, ", hanging nodes", [](Kind &k) { k.hanging = true; });
-    add(nodal_facets, ", slip", [](Kind &k) { k.friction = Friction::slip; });
+    add(nodal_facets,
+        ", slip",
+        [](Kind &k)
+        {
+          k.friction  = Friction::slip;
+          k.tolerance = 0.1; // areas are left out
+        });
 
     for (const Kind &base : {plain, smooth})
     {
@@ -346,13 +355,14 @@ namespace
             k.hanging  = true;
             k.friction = Friction::stick;
           });
-      add(base,
-          ", overhang, stick",
-          [](Kind &k)
-          {
-            k.overhang = true;
-            k.friction = Friction::stick;
-          });
+      for (const double overhang : {0.0125, 0.125, 0.6}) // dual functions, these with hats, hats
+        add(base,
+            ", overhang " + std::to_string(overhang) + ", stick",
+            [overhang](Kind &k)
+            {
+              k.overhang = overhang;
+              k.friction = Friction::stick;
+            });
       add(base,
           ", slave normals, stick",
           [](Kind &k)
