@@ -25,10 +25,14 @@ namespace Nodus
       , rigid_(geometry.rigid[face.pair])
       , part_(face.dual_part())
       , plain_(part_ == 1. && slave_.face(face.face).basis.empty())
+      , n_(slave_.face(face.face).nodes.size())
   {
-    number_sources();
-    const unsigned int m = slave_.face(face.face).slaves.size(), size = 3 * sources_.size();
+    number_nodes();
+    const unsigned int m = slave_.face(face.face).slaves.size(), size = 3 * nodes_.size();
     n_columns_ = nodes_.size() + 7;
+    first_     = plain_ ? (rigid_ != nullptr ? moved() : offset()) : 0;
+    for (Matrix *const parts : {&phi_parts_, &hat_parts_, &part_weight_})
+      parts->setZero(m, parts_.size());
     mass_.setZero(m, m);
     d_mass_.setZero(m * m, size);
     phi_.setZero(m, n_columns_);
@@ -52,78 +56,67 @@ namespace Nodus
     return Eigen::Map<const Nodal>(values.data(), face.slaves.size());
   }
 
-  void FaceVariation::number_sources()
+  void FaceVariation::number_nodes()
   {
-    const unsigned int p = face_.pair;
-    nodes_               = slave_.face(face_.face).nodes;
-    const auto add       = [&](const unsigned int node, const unsigned int first)
+    nodes_         = slave_.face(face_.face).nodes;
+    const auto add = [&](const unsigned int node)
     {
-      if (std::find(nodes_.begin() + first, nodes_.end(), node) == nodes_.end())
+      if (std::find(nodes_.begin() + n_, nodes_.end(), node) == nodes_.end())
         nodes_.push_back(node);
     };
-    const unsigned int first = nodes_.size();
+    const auto add_moving = [&](const SurfaceGeometry &surface, const unsigned int f)
+    {
+      for (unsigned int i = 0; i < VariationSources::n_moving(surface, f); ++i)
+        parts_.push_back(all_sources_.part(face_.pair, &surface == &master_, f, i));
+    };
+    add_moving(slave_, face_.face);
     if (rigid_ != nullptr && rigid_->carrier() != nullptr)
       for (const unsigned int node : rigid_->carrier()->nodes())
-        add(node, first);
+        add(node);
     for (const MortarPoint &point : face_.points)
-      if (rigid_ == nullptr &&
-          std::find(master_faces_.begin(), master_faces_.end(), point.master.face) == master_faces_.end())
+      if (const unsigned int f = point.master.face;
+          rigid_ == nullptr && std::find(master_faces_.begin(), master_faces_.end(), f) == master_faces_.end())
       {
-        master_faces_.push_back(point.master.face);
-        for (const unsigned int node : master_.face(point.master.face).nodes)
-          add(node, first);
+        master_faces_.push_back(f);
+        for (const unsigned int node : master_.face(f).nodes)
+          add(node);
+        add_moving(master_, f);
       }
-    sources_ = nodes_;
-    for (unsigned int i = 0; i < VariationSources::n_moving(slave_, face_.face); ++i)
-      sources_.push_back(all_sources_.part(p, false, face_.face, i));
-    for (const unsigned int f : master_faces_)
-      for (unsigned int i = 0; i < VariationSources::n_moving(master_, f); ++i)
-        sources_.push_back(all_sources_.part(p, true, f, i));
   }
 
   void FaceVariation::number_local(const unsigned int master_face)
   {
-    const unsigned int n = slave_.face(face_.face).nodes.size();
     local_.place.clear();
-    for (unsigned int i = 0; i < n; ++i)
+    for (unsigned int i = 0; i < n_; ++i)
       local_.place.push_back(i);
     const auto add = [&](const unsigned int *const begin, const unsigned int number)
     {
       for (unsigned int i = 0; i < number; ++i)
-        local_.place.push_back(std::find(nodes_.begin() + n, nodes_.end(), begin[i]) - nodes_.begin());
+        local_.place.push_back(std::find(nodes_.begin() + n_, nodes_.end(), begin[i]) - nodes_.begin());
     };
-    if (rigid_ == nullptr)
-      add(master_.face(master_face).nodes.data(), n);
-    else if (rigid_->carrier() != nullptr)
-      add(rigid_->carrier()->nodes().data(), RigidCarrier::n_nodes);
-    local_.n_slave        = n;
-    local_.n_master       = local_.place.size() - n;
-    local_.n_slave_parts  = VariationSources::n_moving(slave_, face_.face);
-    local_.n_master_parts = rigid_ == nullptr ? VariationSources::n_moving(master_, master_face) : 0;
-    const auto add_parts  = [&](const bool master, const unsigned int f, const unsigned int number)
+    local_.first_part = parts_.size();
+    if (rigid_ != nullptr)
     {
-      for (unsigned int i = 0; i < number; ++i)
-        local_.place.push_back(
-            std::find(sources_.begin() + nodes_.size(), sources_.end(), all_sources_.part(face_.pair, master, f, i)) -
-            sources_.begin());
-    };
-    add_parts(false, face_.face, local_.n_slave_parts);
-    add_parts(true, master_face, local_.n_master_parts);
-    n_points_ = 0;
+      if (rigid_->carrier() != nullptr)
+        add(rigid_->carrier()->nodes().data(), RigidCarrier::n_nodes);
+    }
+    else if (!master_faces_.empty())
+    {
+      add(master_.face(master_face).nodes.data(), n_);
+      if (master_.smoothed())
+        local_.first_part =
+            std::find(parts_.begin(), parts_.end(), all_sources_.part(face_.pair, true, master_face, 0)) -
+            parts_.begin();
+    }
+    local_.n_slave  = n_;
+    local_.n_master = local_.place.size() - n_;
+    n_points_       = 0;
   }
 
-  void FaceVariation::add_vector_field(const unsigned int   column,
-                                       const Vector3       &value,
-                                       const Vector3 *const d_slave,
-                                       const Vector3 *const d_master)
+  void FaceVariation::add_vector_field(const unsigned int column, const Vector3 &value, const Vector3 *const d)
   {
     for (unsigned int c = 0; c < dim; ++c)
-      fields_.push_back({column + c,
-                         value[c],
-                         {d_slave != nullptr ? d_slave[0][c] : 0.,
-                          d_slave != nullptr ? d_slave[1][c] : 0.,
-                          d_master != nullptr ? d_master[0][c] : 0.,
-                          d_master != nullptr ? d_master[1][c] : 0.}});
+      fields_.push_back({column + c, value[c], {d[0][c], d[1][c], d[2][c], d[3][c]}});
   }
 
   void FaceVariation::make_fields(const MortarPoint &point, const FaceShape &shape)
@@ -133,39 +126,47 @@ namespace Nodus
       fields_.push_back({b, shape.value[b], {shape.d_xi[b], shape.d_eta[b], 0., 0.}});
     if (!plain_)
       fields_.push_back({area(), 1., {0., 0., 0., 0.}});
+    Vector3 value, d[4]; // of the offset
     if (slave_.smoothed())
     {
       const FaceGeometry smooth = slave_.at(face_.face, point.xi, point.eta);
       const FaceGeometry facet(slave_.face(face_.face), shape, slave_.positions());
-      const Vector3      d[2] = {smooth.d_xi - facet.d_xi, smooth.d_eta - facet.d_eta};
-      add_vector_field(offset(), smooth.x - facet.x, d, nullptr);
+      value = smooth.x - facet.x;
+      d[0]  = smooth.d_xi - facet.d_xi;
+      d[1]  = smooth.d_eta - facet.d_eta;
     }
-    make_master_fields(point);
+    if (rigid_ != nullptr)
+      make_rigid_fields(point, value, d);
+    else
+      make_meshed_fields(point, value, d);
+    if (rigid_ != nullptr || slave_.smoothed() || master_.smoothed())
+      add_vector_field(offset(), value, d);
   }
 
-  void FaceVariation::make_master_fields(const MortarPoint &point)
+  void FaceVariation::make_meshed_fields(const MortarPoint &point, Vector3 &offset, Vector3 *const d_offset)
   {
-    const unsigned int *const column = local_.place.data() + local_.n_slave;
-    if (rigid_ == nullptr)
-    {
-      const auto [f, xi, eta] = point.master;
-      const FaceShape shape(master_.degree(), xi, eta);
-      for (unsigned int b = 0; b < shape.n; ++b)
-        fields_.push_back({column[b], -shape.value[b], {0., 0., -shape.d_xi[b], -shape.d_eta[b]}});
-      if (!master_.smoothed())
-        return;
-      const FaceGeometry smooth = master_.at(f, xi, eta);
-      const FaceGeometry facet(master_.face(f), shape, master_.positions());
-      const Vector3      d[2] = {facet.d_xi - smooth.d_xi, facet.d_eta - smooth.d_eta};
-      add_vector_field(offset(), facet.x - smooth.x, nullptr, d);
+    const auto [f, xi, eta] = point.master;
+    const FaceShape shape(master_.degree(), xi, eta);
+    for (unsigned int b = 0; b < shape.n; ++b)
+      fields_.push_back(
+          {weight(local_.place[local_.n_slave + b]), -shape.value[b], {0., 0., -shape.d_xi[b], -shape.d_eta[b]}});
+    if (!master_.smoothed())
       return;
-    }
+    const FaceGeometry smooth = master_.at(f, xi, eta);
+    const FaceGeometry facet(master_.face(f), shape, master_.positions());
+    offset -= smooth.x - facet.x;
+    d_offset[2] = facet.d_xi - smooth.d_xi;
+    d_offset[3] = facet.d_eta - smooth.d_eta;
+  }
+
+  void FaceVariation::make_rigid_fields(const MortarPoint &point, Vector3 &offset, Vector3 *const d_offset)
+  {
     const RigidPoint closest = rigid_->closest(slave_.at(face_.face, point.xi, point.eta).x);
     if (const RigidCarrier *const carrier = rigid_->carrier())
     {
       const RigidCarrier::Weights weights = carrier->weights(closest.x);
       for (unsigned int b = 0; b < weights.size(); ++b)
-        fields_.push_back({column[b],
+        fields_.push_back({weight(local_.place[local_.n_slave + b]),
                            -weights[b],
                            {0.,
                             0.,
@@ -174,14 +175,14 @@ namespace Nodus
       return;
     }
     const RigidPart part = rigid_->part(closest.x);
-    Vector3         d_x[2], d_moved[2]; // the motion is linear in the point
+    Vector3         d_moved[4]; // the motion is linear in the point
     for (unsigned int i = 0; i < 2; ++i)
     {
-      d_x[i]     = -closest.direction[i];
-      d_moved[i] = rigid_->part(closest.x + closest.direction[i]).moved - part.moved;
+      d_offset[2 + i] = -closest.direction[i];
+      d_moved[2 + i]  = rigid_->part(closest.x + closest.direction[i]).moved - part.moved;
     }
-    add_vector_field(offset(), -part.x, nullptr, d_x);
-    add_vector_field(moved(), part.moved, nullptr, d_moved);
+    offset -= part.x;
+    add_vector_field(moved(), part.moved, d_moved);
   }
 
   void FaceVariation::add_point(const MortarPoint &point, const Gradient &gradient)
@@ -191,7 +192,8 @@ namespace Nodus
     make_fields(point, shape);
     const Nodal        phi      = of_slaves(shape.value);
     const Nodal        d_phi[2] = {of_slaves(shape.d_xi), of_slaves(shape.d_eta)};
-    const unsigned int m = phi.size(), n_rows = m * m + (part_ < 1. ? 2 : 1) * m * fields_.size();
+    const unsigned int m = phi.size(), n_mass = m * (m + 1) / 2,
+                       n_rows = n_mass + (part_ < 1. ? 2 : 1) * m * fields_.size();
     if (n_points_ == 0)
       coefficients_.resize(n_rows, 0);
     // matrices keep their memory
@@ -202,17 +204,19 @@ namespace Nodus
       coefficients_.conservativeResize(n_rows, std::max<Eigen::Index>(2 * coefficients_.cols(), 64 * n_coordinates));
     gradients_.middleRows<n_coordinates>(n_coordinates * n_points_) = gradient;
 
-    for (unsigned int a = 0; a < m; ++a)
-      for (unsigned int c = 0; c < m; ++c)
+    for (unsigned int a = 0, row = 0; a < m; ++a)
+      for (unsigned int c = 0; c <= a; ++c)
       {
-        auto         coefficient = coefficients_.block<1, n_coordinates>(a * m + c, n_coordinates * n_points_);
+        auto         coefficient = coefficients_.block<1, n_coordinates>(row++, n_coordinates * n_points_);
         const double product     = weight * phi[a] * phi[c];
         mass_(a, c) += product;
+        if (c < a)
+          mass_(c, a) += product;
         coefficient << product, weight * (d_phi[0][a] * phi[c] + phi[a] * d_phi[0][c]),
             weight * (d_phi[1][a] * phi[c] + phi[a] * d_phi[1][c]), 0., 0.;
       }
-    add_products(phi, d_phi, weight, phi_, m * m);
-    add_parts(point, phi, weight, d_phi_);
+    add_products(phi, d_phi, weight, phi_, n_mass);
+    add_parts(point, phi, weight, phi_parts_);
     if (part_ < 1.)
     {
       const unsigned int degree = slave_.degree();
@@ -225,8 +229,8 @@ namespace Nodus
                (2. * step);
       };
       const Nodal d_hat[2] = {slope(step, 0.), slope(0., step)};
-      add_products(hat, d_hat, weight, hat_, m * m + m * fields_.size());
-      add_parts(point, hat, weight, d_hat_);
+      add_products(hat, d_hat, weight, hat_, n_mass + m * fields_.size());
+      add_parts(point, hat, weight, hat_parts_);
     }
     ++n_points_;
   }
@@ -245,9 +249,8 @@ namespace Nodus
       }
   }
 
-  /// Offsets change with their parts at fixed coordinates, too.
-  void
-  FaceVariation::add_parts(const MortarPoint &point, const Nodal &test, const double weight, Matrix &derivative) const
+  /// Offsets follow their parts at fixed coordinates.
+  void FaceVariation::add_parts(const MortarPoint &point, const Nodal &test, const double weight, Matrix &sum) const
   {
     const auto add =
         [&](const unsigned int first, const unsigned int n, const double sign, const double xi, const double eta)
@@ -257,12 +260,15 @@ namespace Nodus
       const auto value = SurfaceGeometry::offset_functions(xi, eta);
       for (unsigned int a = 0; a < test.size(); ++a)
         for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int c = 0; c < dim; ++c)
-            derivative(a * n_columns_ + offset() + c, 3 * local_.place[first + i] + c) +=
-                sign * weight * test[a] * value[i];
+          sum(a, first + i) += sign * weight * test[a] * value[i];
     };
-    add(local_.first_part(), local_.n_slave_parts, 1., point.xi, point.eta);
-    add(local_.first_part() + local_.n_slave_parts, local_.n_master_parts, -1., point.master.xi, point.master.eta);
+    add(0, VariationSources::n_moving(slave_, face_.face), 1., point.xi, point.eta);
+    if (rigid_ == nullptr)
+      add(local_.first_part,
+          VariationSources::n_moving(master_, point.master.face),
+          -1.,
+          point.master.xi,
+          point.master.eta);
   }
 
   void FaceVariation::flush()
@@ -270,22 +276,25 @@ namespace Nodus
     if (n_points_ == 0)
       return;
     const unsigned int n = n_coordinates * n_points_, m = mass_.rows();
-    const Matrix       product = coefficients_.leftCols(n) * gradients_.topRows(n);
-    const auto         scatter = [&](const unsigned int from, Matrix &to, const unsigned int row)
+    product_.noalias() = coefficients_.leftCols(n) * gradients_.topRows(n);
+    const auto scatter = [&](const unsigned int from, Matrix &to, const unsigned int row)
     {
       for (unsigned int l = 0; l < local_.size(); ++l)
-        for (unsigned int c = 0; c < dim; ++c)
-          to(row, 3 * local_.place[l] + c) += product(from, 3 * l + c);
+        to.block<1, dim>(row, dim * local_.place[l]) += product_.block<1, dim>(from, dim * l);
     };
-    for (unsigned int i = 0; i < m * m; ++i)
-      scatter(i, d_mass_, i);
-    for (unsigned int a = 0, i = m * m; a < m; ++a)
-      for (const Field &f : fields_)
-        scatter(i++, d_phi_, a * n_columns_ + f.column);
-    if (part_ < 1.)
-      for (unsigned int a = 0, i = m * m + m * fields_.size(); a < m; ++a)
-        for (const Field &f : fields_)
-          scatter(i++, d_hat_, a * n_columns_ + f.column);
+    unsigned int from = 0;
+    for (unsigned int a = 0; a < m; ++a)
+      for (unsigned int c = 0; c <= a; ++c, ++from)
+      {
+        scatter(from, d_mass_, a * m + c);
+        if (c < a)
+          scatter(from, d_mass_, c * m + a);
+      }
+    for (Matrix *const to : {&d_phi_, &d_hat_})
+      if (to == &d_phi_ || part_ < 1.)
+        for (unsigned int a = 0; a < m; ++a)
+          for (const Field &f : fields_)
+            scatter(from++, *to, a * n_columns_ + f.column);
     n_points_ = 0;
   }
 
@@ -294,7 +303,7 @@ namespace Nodus
     static const dealii::QGauss<2> gauss(4);
     const unsigned int             m = mass_.rows();
     exact_.setZero(m);
-    d_exact_.setZero(m, 3 * sources_.size());
+    d_exact_.setZero(m, 3 * nodes_.size());
     number_local(master_faces_.empty() ? 0 : master_faces_[0]);
     const Gradient fixed = Gradient::Zero(n_coordinates, 3 * local_.size());
     for (unsigned int q = 0; q < gauss.size(); ++q)
@@ -314,55 +323,65 @@ namespace Nodus
   /// scale (part area C + (1 - part) H), the scale such that dual functions have their exact areas.
   void FaceVariation::finish()
   {
-    const unsigned int m = mass_.rows(), n_face_nodes = slave_.face(face_.face).nodes.size();
-    result_.setZero(m * n_columns_, 3 * sources_.size());
+    const unsigned int m = mass_.rows(), n = n_columns_ - first_;
+    result_.setZero(m * n_columns_, 3 * nodes_.size());
     if (face_.points.empty())
       return;
     if (part_ == 0.)
     {
-      result_ = d_hat_;
+      result_      = d_hat_;
+      part_weight_ = hat_parts_;
       return;
     }
-    const Matrix C = mass_.ldlt().solve(phi_), inverse = mass_.ldlt().solve(Matrix::Identity(m, m));
+    const Eigen::LDLT<Eigen::MatrixXd> solver(mass_);
+    const Matrix                       C = solver.solve(phi_), parts = solver.solve(phi_parts_),
+                 inverse = solver.solve(Eigen::MatrixXd::Identity(m, m));
+    const auto rows      = [&](Matrix &matrix, const unsigned int a)
+    { return matrix.middleRows(a * n_columns_ + first_, n); };
     // dC = M^-1 (dU - dM C)
-    Matrix d_C(m * n_columns_, 3 * sources_.size());
     for (unsigned int a = 0; a < m; ++a)
       for (unsigned int c = 0; c < m; ++c)
-        d_phi_.middleRows(a * n_columns_, n_columns_) -= C.row(c).transpose() * d_mass_.row(a * m + c);
-    d_C.setZero();
+        rows(d_phi_, a).noalias() -= C.row(c).tail(n).transpose() * d_mass_.row(a * m + c);
     for (unsigned int a = 0; a < m; ++a)
       for (unsigned int c = 0; c < m; ++c)
-        d_C.middleRows(a * n_columns_, n_columns_) += inverse(a, c) * d_phi_.middleRows(c * n_columns_, n_columns_);
-    if (part_ == 1.)
+        rows(result_, a) += inverse(a, c) * rows(d_phi_, c);
+    if (part_ < 1.)
     {
-      for (unsigned int a = 0; a < m; ++a)
-      {
-        result_.middleRows(a * n_columns_, n_columns_) =
-            exact_[a] * d_C.middleRows(a * n_columns_, n_columns_) + C.row(a).transpose() * d_exact_.row(a);
-        if (plain_)
-          result_.row(a * n_columns_ + a) = d_exact_.row(a);
-        result_.row(a * n_columns_ + area()) = d_exact_.row(a);
-      }
+      finish_partly(C, parts);
       return;
     }
-    (void)n_face_nodes;
-    // d_phi_ of the area has been changed above: add what was taken off, as C is 1 there
     for (unsigned int a = 0; a < m; ++a)
     {
+      rows(result_, a) *= exact_[a];
+      rows(result_, a).noalias() += C.row(a).tail(n).transpose() * d_exact_.row(a);
+      part_weight_.row(a) = exact_[a] * parts.row(a);
+      if (plain_)
+        result_.row(a * n_columns_ + a) = d_exact_.row(a);
+      result_.row(a * n_columns_ + area()) = d_exact_.row(a);
+    }
+  }
+
+  void FaceVariation::finish_partly(const Matrix &C, const Matrix &parts)
+  {
+    const unsigned int m = mass_.rows();
+    for (unsigned int a = 0; a < m; ++a)
+    {
+      // what finish() took off is put back, as C is 1 there
       const double total   = phi_(a, area());
       Matrix       d_total = d_phi_.row(a * n_columns_ + area());
       for (unsigned int c = 0; c < m; ++c)
         d_total += C(c, area()) * d_mass_.row(a * m + c);
       const Eigen::RowVectorXd sum  = part_ * total * C.row(a) + (1. - part_) * hat_.row(a);
       const Eigen::RowVectorXd side = total * C.row(a) - hat_.row(a);
-      Matrix                   derivative =
-          part_ * (total * d_C.middleRows(a * n_columns_, n_columns_) + C.row(a).transpose() * d_total) +
+      const Matrix             derivative =
+          part_ * (total * result_.middleRows(a * n_columns_, n_columns_) + C.row(a).transpose() * d_total) +
           (1. - part_) * d_hat_.middleRows(a * n_columns_, n_columns_) +
           face_.dual_slope() * side.transpose() * d_coverage_;
       const double S = sum[area()], scale = 1. + part_ * (exact_[a] / S - 1.);
       const Matrix d_scale = face_.dual_slope() * (exact_[a] / S - 1.) * d_coverage_ +
                              part_ / S * (d_exact_.row(a) - exact_[a] / S * derivative.row(area()));
       result_.middleRows(a * n_columns_, n_columns_) = scale * derivative + sum.transpose() * d_scale;
+      part_weight_.row(a) = scale * (part_ * total * parts.row(a) + (1. - part_) * hat_parts_.row(a));
     }
   }
 } // namespace Nodus

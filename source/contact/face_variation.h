@@ -12,8 +12,10 @@
 namespace Nodus
 {
   /// What a slave face adds to the rows of its slave nodes (AveragedJump, before the division by their areas), and how
-  /// that follows the surfaces: integration points move with the overlaps, or slide on the master; their areas, the
-  /// dual functions and the covered part change. Exact for the discrete integrals, but for
+  /// that follows the nodes: integration points move with the overlaps, or slide on the master; their areas, the dual
+  /// functions and the covered part change. Exact for the discrete integrals, but for
+  /// - points that smoothing shifts along the surfaces as these bend, which would couple every force with two rings of
+  ///   nodes on both sides (the offsets themselves are in, by parts());
   /// - the covered part of faces that stick out of the master and are integrated by a fixed rule, which jumps with its
   ///   points;
   /// - normals that are averaged over the face (AveragedJump::Row::normal).
@@ -30,37 +32,53 @@ namespace Nodus
                   const std::vector<Point>    &measure,
                   bool                         current);
 
-    /// Nodes with a weight: of the face, then those of the master or of what carries it.
+    /// Nodes with a weight, and that derivatives are with respect to: of the face, then those of the master or of what
+    /// carries it.
     const std::vector<unsigned int> &nodes() const
     {
       return nodes_;
     }
-    const std::vector<unsigned int> &sources() const
-    {
-      return sources_;
-    }
-    /// Derivative with respect to the sources, three components each, of a column of the row of slave node @p a of the
-    /// face: the weight of a node, or one of those below.
+    /// Derivatives of a column of the row of slave node @p a of the face, three components for each node: the weight of
+    /// a node, or one of those below.
     const double *row(const unsigned int a, const unsigned int column) const
     {
       return result_.data() + (a * n_columns_ + column) * result_.cols();
     }
+    /// These are zero.
+    bool is_void(const unsigned int a, const unsigned int column) const
+    {
+      return plain_ && column < first_ && column != a && column != area();
+    }
+    unsigned int weight(const unsigned int node) const
+    {
+      return node < n_ ? node : node + 7;
+    }
     unsigned int area() const
     {
-      return nodes_.size();
+      return n_;
     }
-    /// Jump of the positions beside that of the nodes, and motion of a prescribed rigid master (three each).
-    unsigned int offset() const
-    {
-      return nodes_.size() + 1;
-    }
+    /// Motion of a prescribed rigid master, and the jump of the positions beside that of the nodes (three each).
     unsigned int moved() const
     {
-      return nodes_.size() + 4;
+      return n_ + 1;
+    }
+    unsigned int offset() const
+    {
+      return n_ + 4;
+    }
+
+    /// Sources that are no nodes: the offset in the row of slave node @p a follows part @p i with this weight.
+    const std::vector<unsigned int> &parts() const
+    {
+      return parts_;
+    }
+    double part_weight(const unsigned int a, const unsigned int i) const
+    {
+      return part_weight_(a, i);
     }
 
   private:
-    static constexpr int max_local     = 3 * 34;
+    static constexpr int max_local     = 3 * 18;
     static constexpr int n_coordinates = 5; ///< log of the weight, xi, eta, both of the master
     using Row                          = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, max_local>;
     using Row2                         = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor, 2, max_local>;
@@ -68,19 +86,15 @@ namespace Nodus
     using Nodal    = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 9, 1>;
     using Square   = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 9, 9>;
 
-    /// Sources of points with the same master face, in the order slave nodes, master nodes, slave parts, master parts:
-    /// their places in sources_.
+    /// Nodes that move points with the same master face, slave nodes first: their places in nodes_.
     struct Local
     {
-      unsigned int              n_slave, n_master, n_slave_parts, n_master_parts;
+      unsigned int              n_slave, n_master;
       std::vector<unsigned int> place;
+      unsigned int              first_part; ///< of the master face, in parts_
       unsigned int              size() const
       {
         return place.size();
-      }
-      unsigned int first_part() const
-      {
-        return n_slave + n_master;
       }
     };
     /// A column of the rows at a point, and its derivatives with respect to the local coordinates.
@@ -91,17 +105,18 @@ namespace Nodus
     };
     struct SegmentFrame;
 
-    void number_sources();
-    void number_local(unsigned int master_face);
-    void add_segments();
-    void add_fixed_points();
-    void add_point(const MortarPoint &point, const Gradient &gradient);
-    void make_fields(const MortarPoint &point, const FaceShape &shape);
-    void make_master_fields(const MortarPoint &point);
-    void add_vector_field(unsigned int column, const Vector3 &value, const Vector3 *d_slave, const Vector3 *d_master);
-    void add_parts(const MortarPoint &point, const Nodal &test, double weight, Matrix &derivative) const;
-    void add_products(const Nodal &test, const Nodal *d_test, double weight, Matrix &value, unsigned int row);
-    void flush();
+    void     number_nodes();
+    void     number_local(unsigned int master_face);
+    void     add_segments();
+    void     add_fixed_points();
+    void     add_point(const MortarPoint &point, const Gradient &gradient);
+    void     make_fields(const MortarPoint &point, const FaceShape &shape);
+    void     make_meshed_fields(const MortarPoint &point, Vector3 &offset, Vector3 *d_offset);
+    void     make_rigid_fields(const MortarPoint &point, Vector3 &offset, Vector3 *d_offset);
+    void     add_vector_field(unsigned int column, const Vector3 &value, const Vector3 *d);
+    void     add_parts(const MortarPoint &point, const Nodal &test, double weight, Matrix &sum) const;
+    void     add_products(const Nodal &test, const Nodal *d_test, double weight, Matrix &value, unsigned int row);
+    void     flush();
     Gradient segment_gradient(const SegmentTrace::Polygon &polygon,
                               const SegmentTrace::Place   &place,
                               const MortarPoint           &point,
@@ -111,6 +126,7 @@ namespace Nodus
     void     finish_coverage(double face_area);
     void     take_exact_areas();
     void     finish();
+    void     finish_partly(const Matrix &C, const Matrix &parts);
     Nodal    of_slaves(const std::array<double, 9> &nodal) const;
 
     const ContactPairParameters &pair_;
@@ -123,16 +139,17 @@ namespace Nodus
     const RigidSurface *const    rigid_;
     const double                 part_;
     const bool                   plain_; ///< dual functions alone, no hanging node: the slave part is the node itself
-    std::vector<unsigned int>    nodes_, sources_, master_faces_;
-    unsigned int                 n_columns_ = 0;
+    const unsigned int           n_;     ///< nodes of the face
+    std::vector<unsigned int>    nodes_, parts_, master_faces_;
+    unsigned int                 n_columns_ = 0, first_ = 0; ///< first_ that the points contribute to
     Local                        local_;
     std::vector<Field>           fields_;
-    Matrix                       coefficients_, gradients_; ///< of the products at the points since the last flush
-    unsigned int                 n_points_ = 0;
-    Matrix                       mass_, phi_, hat_; ///< integrals of phi phi^T, and of columns times phi and hats
-    Matrix                       d_mass_, d_phi_, d_hat_, d_coverage_, d_exact_;
-    Nodal                        exact_;
-    Matrix                       result_;
+    Matrix       coefficients_, gradients_, product_; ///< of the products at the points since the last flush
+    unsigned int n_points_ = 0;
+    Matrix       mass_, phi_, hat_; ///< integrals of phi phi^T, and of columns times phi and hats
+    Matrix       d_mass_, d_phi_, d_hat_, d_coverage_, d_exact_;
+    Nodal        exact_;
+    Matrix       phi_parts_, hat_parts_, part_weight_, result_;
   };
 } // namespace Nodus
 

@@ -226,13 +226,6 @@ namespace Nodus
     const FaceShape master_shape(master_.degree(), point.master.xi, point.master.eta);
     for (unsigned int n = 0; n < master_shape.n; ++n)
       motion.middleCols<3>(3 * (local_.n_slave + n)) -= master_shape.value[n] * frame.axes;
-    const auto part        = SurfaceGeometry::offset_functions(point.xi, point.eta),
-               master_part = SurfaceGeometry::offset_functions(point.master.xi, point.master.eta);
-    unsigned int column    = 3 * local_.first_part();
-    for (unsigned int i = 0; i < local_.n_slave_parts; ++i, column += 3)
-      motion.middleCols<3>(column) += part[i] * frame.axes;
-    for (unsigned int i = 0; i < local_.n_master_parts; ++i, column += 3)
-      motion.middleCols<3>(column) -= master_part[i] * frame.axes;
     J.col(0)                = frame.in_plane(y.d_xi);
     J.col(1)                = frame.in_plane(y.d_eta);
     result.middleRows<2>(3) = J.inverse() * motion;
@@ -275,13 +268,10 @@ namespace Nodus
     const Point     p      = slave_.at(face_.face, point.xi, point.eta).x;
     Gradient        result = Gradient::Zero(n_coordinates, 3 * local_.size());
     result.row(0)          = element_gradient(shape, point.xi, point.eta, result);
-    const auto parts       = SurfaceGeometry::offset_functions(point.xi, point.eta);
     const auto add_slave   = [&](const unsigned int row, const Vector3 &dual)
     {
       for (unsigned int n = 0; n < shape.n; ++n)
         result.block<1, 3>(row, 3 * n) += shape.value[n] * eigen(dual);
-      for (unsigned int i = 0; i < local_.n_slave_parts; ++i)
-        result.block<1, 3>(row, 3 * (local_.first_part() + i)) += parts[i] * eigen(dual);
     };
     if (rigid_ != nullptr)
     {
@@ -305,8 +295,6 @@ namespace Nodus
       add_slave(3 + i, gradient.point[i]);
       for (unsigned int n = 0; n < local_.n_master; ++n)
         result.block<1, 3>(3 + i, 3 * (local_.n_slave + n)) += eigen(gradient.node[i][n]);
-      for (unsigned int n = 0; n < local_.n_master_parts; ++n)
-        result.block<1, 3>(3 + i, 3 * (local_.first_part() + local_.n_slave_parts + n)) += eigen(gradient.part[i][n]);
     }
     return result;
   }

@@ -182,7 +182,11 @@ namespace Nodus
       faces.for_each(site, [&](const FaceVariation &face, const unsigned int) { variation.number(surfaces_, face); });
       variation.allocate();
       faces.for_each(site,
-                     [&](const FaceVariation &face, const unsigned int a) { variation.add_face(surfaces_, face, a); });
+                     [&](const FaceVariation &face, const unsigned int a)
+                     {
+                       variation.add_face(surfaces_, face, a);
+                       add_parts(site, face, a, couplings);
+                     });
       variation.take_means(averaged_.row(site));
       faces.done(site);
     }
@@ -203,6 +207,18 @@ namespace Nodus
                         averaged_.row(site),
                         geometry_.slave[surfaces_.pair(site)].positions());
     couple(site, state, residual, law(site, state, residual, follows), variation, couplings);
+  }
+
+  void GeometryTangent::add_parts(const unsigned int   site,
+                                  const FaceVariation &face,
+                                  const unsigned int   a,
+                                  GeometryCouplings   &couplings) const
+  {
+    Matrix gap(1, 3 * face.parts().size());
+    for (unsigned int i = 0; i < face.parts().size(); ++i)
+      gap.middleCols<3>(3 * i) = face.part_weight(a, i) / averaged_.row(site).area * eigen(pairing_[site].normal);
+    for (const auto &[k, coefficient] : gap_rows_[site])
+      couplings.add_gap(k, face.parts(), coefficient * gap);
   }
 
   Eigen::RowVectorXd GeometryTangent::gap_variation(const unsigned int   site,

@@ -23,8 +23,9 @@ namespace Nodus
   /// of sticking sites, the length and direction of Lambda. Rows of multipliers are divided by area and threshold
   /// before they vary: these are factors of laws that hold in the end.
   ///
-  /// Left out: areas of the nodal scheme, slips where a point has several nodes (consistent weights) or a site is an
-  /// integration point, normals averaged over faces (of slave nodes without a projection of their own).
+  /// Left out: how smoothing shifts points along the surfaces (FaceVariation), areas of the nodal scheme, slips where a
+  /// point has several nodes (consistent weights) or a site is an integration point, normals averaged over faces (of
+  /// slave nodes without a projection of their own).
   class GeometryTangent
   {
   public:
@@ -85,6 +86,8 @@ namespace Nodus
                 const Law             &law,
                 const SiteVariation   &variation,
                 GeometryCouplings     &couplings) const;
+    /// What the parts of offsets add to gaps.
+    void add_parts(unsigned int site, const FaceVariation &face, unsigned int a, GeometryCouplings &couplings) const;
     /// Variation of the gap beside that at fixed geometry; before the balance of moments, which leaves gaps alone.
     Eigen::RowVectorXd
     gap_variation(unsigned int site, const ContactState &state, const SiteVariation &variation) const;

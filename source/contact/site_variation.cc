@@ -65,8 +65,8 @@ namespace Nodus
   {
     for (const unsigned int n : face.nodes())
       surfaces.expand(n, 1., [&](const unsigned int free_node, double) { node(free_node); });
-    for (const unsigned int source : face.sources())
-      column(source);
+    for (const unsigned int n : face.nodes())
+      column(n);
   }
 
   void SiteVariation::allocate()
@@ -80,24 +80,29 @@ namespace Nodus
     const auto add = [&](const Eigen::Index row, const unsigned int of_face, const double factor)
     {
       const double *value = face.row(a, of_face);
-      for (const unsigned int source : face.sources())
-        for (unsigned int c = 0, at = 3 * place_of_source_[source]; c < dim; ++c)
+      for (const unsigned int node : face.nodes())
+        for (unsigned int c = 0, at = 3 * place_of_source_[node]; c < dim; ++c)
           rows_(row, at + c) += factor * *value++;
     };
     for (unsigned int b = 0; b < face.nodes().size(); ++b)
     {
-      const unsigned int n = face.nodes()[b];
-      surfaces.expand(
-          n, 1., [&](const unsigned int free_node, const double part) { add(place_of_node_[free_node], b, part); });
+      const unsigned int n = face.nodes()[b], of_face = face.weight(b);
+      if (face.is_void(a, of_face))
+        continue;
+      surfaces.expand(n,
+                      1.,
+                      [&](const unsigned int free_node, const double part)
+                      { add(place_of_node_[free_node], of_face, part); });
       for (unsigned int c = 0; c < dim; ++c) // of hanging nodes
         if (surfaces.nodes()[n].offset[c] != 0.)
-          add(offset() + c, b, surfaces.nodes()[n].offset[c]);
+          add(offset() + c, of_face, surfaces.nodes()[n].offset[c]);
     }
     add(area(), face.area(), 1.);
     for (unsigned int c = 0; c < dim; ++c)
     {
       add(offset() + c, face.offset() + c, 1.);
-      add(moved() + c, face.moved() + c, 1.);
+      if (!face.is_void(a, face.moved() + c))
+        add(moved() + c, face.moved() + c, 1.);
     }
   }
 
@@ -138,8 +143,11 @@ namespace Nodus
           beside += e.weight * x[e.node];
       for (const AveragedJump::Entry &e : row.master)
       {
-        entries.push_back(
-            {site.place_of_node_[e.node], std::abs(e.weight), e.weight > 0. ? 1. : -1., Vector3(x[e.node]), Eigen::Vector2d::Zero()});
+        entries.push_back({site.place_of_node_[e.node],
+                           std::abs(e.weight),
+                           e.weight > 0. ? 1. : -1.,
+                           Vector3(x[e.node]),
+                           Eigen::Vector2d::Zero()});
         mean += std::abs(e.weight) * x[e.node];
         sum += std::abs(e.weight);
       }

@@ -206,11 +206,10 @@ namespace
     fixture.pair_at(state.x);
     for (unsigned int k = 0; k < state.lambda.size(); ++k)
     {
-      const bool stick    = kind.friction == Friction::stick || kind.friction == Friction::tied;
-      const double f   = kind.friction == Friction::none ? 0. : -0.3 * (1. + 0.3 * random(generator));
+      const bool   stick = kind.friction == Friction::stick || kind.friction == Friction::tied;
+      const double f     = kind.friction == Friction::none ? 0. : -0.3 * (1. + 0.3 * random(generator));
       // a node without a projection of its own has a normal averaged over its faces, whose variation is left out
-      const bool closed =
-          fixture.pairing[k].found && (kind.shape != Shape::mesh || fixture.pairing[k].master.found());
+      const bool closed = fixture.pairing[k].found && (kind.shape != Shape::mesh || fixture.pairing[k].master.found());
       fixture.status->assign(k, closed, stick, f);
       state.lambda[k] = closed ? -(1. + 0.5 * random(generator)) : 0.;
       for (double &component : state.Lambda[k])
