@@ -45,7 +45,7 @@ namespace Nodus
     d_coverage_.setZero(1, size);
     take_exact_areas();
     if (!face.points.empty())
-      face.trace.places.empty() ? add_fixed_points() : add_segments();
+      add_all_points();
     finish();
   }
 
@@ -185,7 +185,7 @@ namespace Nodus
     add_vector_field(moved(), part.moved, d_moved);
   }
 
-  void FaceVariation::add_point(const MortarPoint &point, const Gradient &gradient)
+  void FaceVariation::add_point(const MortarPoint &point, const Eigen::Ref<const AnyGradient> &gradient)
   {
     const FaceShape shape(slave_.degree(), point.xi, point.eta);
     const double    weight = point.weight * FaceGeometry(slave_.face(face_.face), shape, measure_).area_vector().norm();
@@ -305,7 +305,6 @@ namespace Nodus
     exact_.setZero(m);
     d_exact_.setZero(m, 3 * nodes_.size());
     number_local(master_faces_.empty() ? 0 : master_faces_[0]);
-    const Gradient fixed = Gradient::Zero(n_coordinates, 3 * local_.size());
     for (unsigned int q = 0; q < gauss.size(); ++q)
     {
       const double    xi = gauss.point(q)[0], eta = gauss.point(q)[1];
@@ -313,7 +312,7 @@ namespace Nodus
       const Nodal area = gauss.weight(q) * FaceGeometry(slave_.face(face_.face), shape, measure_).area_vector().norm() *
                          of_slaves(shape.value);
       exact_ += area;
-      const Row row = element_gradient(shape, xi, eta, fixed);
+      const Row row = fixed_element_gradient(shape, xi, eta);
       for (unsigned int a = 0; a < m && current_; ++a)
         d_exact_.row(a).head(3 * local_.n_slave) += area[a] * row.head(3 * local_.n_slave);
     }

@@ -82,9 +82,11 @@ namespace Nodus
     static constexpr int n_coordinates = 5; ///< log of the weight, xi, eta, both of the master
     using Row                          = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, max_local>;
     using Row2                         = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor, 2, max_local>;
-    using Gradient = Eigen::Matrix<double, n_coordinates, Eigen::Dynamic, Eigen::RowMajor, n_coordinates, max_local>;
-    using Nodal    = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 9, 1>;
-    using Square   = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 9, 9>;
+    using Gradient    = Eigen::Matrix<double, n_coordinates, Eigen::Dynamic, Eigen::RowMajor, n_coordinates, max_local>;
+    using AnyGradient = Eigen::Matrix<double, n_coordinates, Eigen::Dynamic, Eigen::RowMajor>;
+    template <int columns>
+    using FixedGradient = Eigen::Matrix<double, n_coordinates, columns, Eigen::RowMajor>;
+    using Nodal         = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 9, 1>;
 
     /// Nodes that move points with the same master face, slave nodes first: their places in nodes_.
     struct Local
@@ -103,31 +105,37 @@ namespace Nodus
       unsigned int column;
       double       value, d[4];
     };
+    /// For faces that have this many components of nodes together.
+    template <int columns>
     struct SegmentFrame;
 
-    void     number_nodes();
-    void     number_local(unsigned int master_face);
-    void     add_segments();
-    void     add_fixed_points();
-    void     add_point(const MortarPoint &point, const Gradient &gradient);
-    void     make_fields(const MortarPoint &point, const FaceShape &shape);
-    void     make_meshed_fields(const MortarPoint &point, Vector3 &offset, Vector3 *d_offset);
-    void     make_rigid_fields(const MortarPoint &point, Vector3 &offset, Vector3 *d_offset);
-    void     add_vector_field(unsigned int column, const Vector3 &value, const Vector3 *d);
-    void     add_parts(const MortarPoint &point, const Nodal &test, double weight, Matrix &sum) const;
-    void     add_products(const Nodal &test, const Nodal *d_test, double weight, Matrix &value, unsigned int row);
-    void     flush();
-    Gradient segment_gradient(const SegmentTrace::Polygon &polygon,
-                              const SegmentTrace::Place   &place,
-                              const MortarPoint           &point,
-                              const SegmentFrame          &frame);
-    Gradient fixed_gradient(const MortarPoint &point) const;
-    Row      element_gradient(const FaceShape &shape, double xi, double eta, const Gradient &gradient) const;
-    void     finish_coverage(double face_area);
-    void     take_exact_areas();
-    void     finish();
-    void     finish_partly(const Matrix &C, const Matrix &parts);
-    Nodal    of_slaves(const std::array<double, 9> &nodal) const;
+    void number_nodes();
+    void number_local(unsigned int master_face);
+    void add_all_points();
+    template <int columns>
+    void add_segments();
+    void add_fixed_points();
+    void add_point(const MortarPoint &point, const Eigen::Ref<const AnyGradient> &gradient);
+    void make_fields(const MortarPoint &point, const FaceShape &shape);
+    void make_meshed_fields(const MortarPoint &point, Vector3 &offset, Vector3 *d_offset);
+    void make_rigid_fields(const MortarPoint &point, Vector3 &offset, Vector3 *d_offset);
+    void add_vector_field(unsigned int column, const Vector3 &value, const Vector3 *d);
+    void add_parts(const MortarPoint &point, const Nodal &test, double weight, Matrix &sum) const;
+    void add_products(const Nodal &test, const Nodal *d_test, double weight, Matrix &value, unsigned int row);
+    void flush();
+    template <int columns>
+    FixedGradient<columns> segment_gradient(const SegmentTrace::Polygon &polygon,
+                                            const SegmentTrace::Place   &place,
+                                            const MortarPoint           &point,
+                                            const SegmentFrame<columns> &frame);
+    Gradient               fixed_gradient(const MortarPoint &point) const;
+    template <typename Element, typename Motion>
+    Element element_gradient(const FaceShape &shape, double xi, double eta, const Motion &motion) const;
+    Row     fixed_element_gradient(const FaceShape &shape, double xi, double eta) const;
+    void    take_exact_areas();
+    void    finish();
+    void    finish_partly(const Matrix &C, const Matrix &parts);
+    Nodal   of_slaves(const std::array<double, 9> &nodal) const;
 
     const ContactPairParameters &pair_;
     const ContactGeometry       &geometry_;

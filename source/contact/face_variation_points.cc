@@ -45,15 +45,37 @@ namespace Nodus
     }
   } // namespace
 
+  /// Of the logarithm of the surface element that areas are measured with.
+  template <typename Element, typename Motion>
+  Element
+  FaceVariation::element_gradient(const FaceShape &shape, const double xi, const double eta, const Motion &motion) const
+  {
+    const SurfaceFace &face   = slave_.face(face_.face);
+    const auto         dual   = dual_tangents(FaceGeometry(face, shape, measure_));
+    const auto         second = curvature(face, measure_, slave_.degree(), xi, eta);
+    Element            result = Element::Zero(1, motion.cols());
+    for (unsigned int i = 0; i < 2; ++i)
+    {
+      for (unsigned int n = 0; n < shape.n && current_; ++n)
+        result.template segment<3>(3 * n) += (i == 0 ? shape.d_xi : shape.d_eta)[n] * eigen(dual[i]);
+      for (unsigned int j = 0; j < 2; ++j)
+        result += dual[i] * second[i + j] * motion.row(1 + j);
+    }
+    return result;
+  }
   /// The plane of a slave cell and how it tilts; motions in it leave its origin and its spin out, on which nothing
   /// depends.
+  template <int columns>
   struct FaceVariation::SegmentFrame
   {
-    SegmentFrame(const SurfaceGeometry &slave, const unsigned int f, const unsigned int cell, const unsigned int size)
+    using Row  = Eigen::Matrix<double, 1, columns, Eigen::RowMajor>;
+    using Row2 = Eigen::Matrix<double, 2, columns, Eigen::RowMajor>;
+
+    SegmentFrame(const SurfaceGeometry &slave, const unsigned int f, const unsigned int cell)
         : corner(corners(slave, f, cell))
         , plane(corner, slave.face(f).orientation)
-        , tilt(Row2::Zero(2, 3 * size))
-        , cell_area(Row::Zero(1, 3 * size))
+        , tilt(Row2::Zero())
+        , cell_area(Row::Zero())
     {
       for (unsigned int i = 0; i < 2; ++i)
         axes.row(i) = eigen(plane.axis[i]);
@@ -93,7 +115,7 @@ namespace Nodus
     /// Adds the motion of a corner of the slave cell, or of the master one.
     void add_corner(const unsigned int node, const Point &x, const double factor, Row2 &motion) const
     {
-      motion.middleCols<3>(3 * node) += factor * axes;
+      motion.template middleCols<3>(3 * node) += factor * axes;
       motion -= factor * height(x) * tilt;
     }
     Row2 motion(const SegmentTrace::Polygon &polygon,
@@ -110,10 +132,12 @@ namespace Nodus
     std::array<Row2, 16>        corners_motion; ///< of the polygon
   };
 
-  FaceVariation::Row2 FaceVariation::SegmentFrame::motion(const SegmentTrace::Polygon &polygon,
-                                                          const unsigned int           i,
-                                                          const unsigned int           degree,
-                                                          const unsigned int           n_slave) const
+  template <int columns>
+  typename FaceVariation::SegmentFrame<columns>::Row2
+  FaceVariation::SegmentFrame<columns>::motion(const SegmentTrace::Polygon &polygon,
+                                               const unsigned int           i,
+                                               const unsigned int           degree,
+                                               const unsigned int           n_slave) const
   {
     using Corner         = SegmentTrace::Corner;
     const Corner &origin = polygon.corner[i];
@@ -124,7 +148,7 @@ namespace Nodus
       else
         add_corner(cell_node(degree, polygon.cell, at), corner[at], factor, sum);
     };
-    Row2 result = Row2::Zero(2, tilt.cols());
+    Row2 result = Row2::Zero();
     if (origin.kind != Corner::crossing)
     {
       const bool master = origin.kind == Corner::of_master;
@@ -151,6 +175,7 @@ namespace Nodus
     return result;
   }
 
+  template <int columns>
   void FaceVariation::add_segments()
   {
     const unsigned int degree = slave_.degree(), none = static_cast<unsigned int>(-1);
@@ -159,12 +184,12 @@ namespace Nodus
     number_local(face_.points[0].master.face);
     for (unsigned int cell = 0; cell < degree * degree; ++cell)
     {
-      const SegmentFrame frame(slave_, face_.face, cell, local_.size());
+      const SegmentFrame<columns> frame(slave_, face_.face, cell);
       face_area += frame.area;
       for (unsigned int i = 0; i < local_.n_slave; ++i)
-        d_coverage_.middleCols<3>(3 * i) -= face_.coverage * frame.cell_area.segment<3>(3 * i);
+        d_coverage_.middleCols<3>(3 * i) -= face_.coverage * frame.cell_area.template segment<3>(3 * i);
     }
-    std::optional<SegmentFrame> frame;
+    std::optional<SegmentFrame<columns>> frame;
     for (unsigned int q = 0; q < face_.points.size(); ++q)
     {
       const SegmentTrace::Place   &place   = face_.trace.places[q];
@@ -174,34 +199,37 @@ namespace Nodus
         flush();
         at = place.polygon;
         number_local(polygon.master);
-        frame.emplace(slave_, face_.face, polygon.cell, local_.size());
-        frame->master_corner = SegmentFrame::corners(master_, polygon.master, polygon.master_cell);
+        frame.emplace(slave_, face_.face, polygon.cell);
+        frame->master_corner = SegmentFrame<columns>::corners(master_, polygon.master, polygon.master_cell);
         for (unsigned int i = 0; i < polygon.n; ++i)
           frame->corners_motion[i] = frame->motion(polygon, i, degree, local_.n_slave);
       }
-      add_point(face_.points[q], segment_gradient(polygon, place, face_.points[q], *frame));
+      add_point(face_.points[q], segment_gradient<columns>(polygon, place, face_.points[q], *frame));
     }
     flush();
     d_coverage_ /= face_area;
   }
 
-  FaceVariation::Gradient FaceVariation::segment_gradient(const SegmentTrace::Polygon &polygon,
-                                                          const SegmentTrace::Place   &place,
-                                                          const MortarPoint           &point,
-                                                          const SegmentFrame          &frame)
+  template <int columns>
+  FaceVariation::FixedGradient<columns> FaceVariation::segment_gradient(const SegmentTrace::Polygon &polygon,
+                                                                        const SegmentTrace::Place   &place,
+                                                                        const MortarPoint           &point,
+                                                                        const SegmentFrame<columns> &frame)
   {
+    using Row               = typename SegmentFrame<columns>::Row;
+    using Row2              = typename SegmentFrame<columns>::Row2;
     const auto  &rule       = segment_rule(slave_.degree());
     const Plane2 a          = plane_point(polygon.x[place.last - 1]) - plane_point(polygon.x[0]),
                  b          = plane_point(polygon.x[place.last]) - plane_point(polygon.x[0]);
     const double twice_area = cross(a, b), r = rule.point(place.q)[0], s = rule.point(place.q)[1];
     const Row2  &first = frame.corners_motion[0];
     const Row2   d_a = frame.corners_motion[place.last - 1] - first, d_b = frame.corners_motion[place.last] - first;
-    Gradient     result = Gradient::Zero(n_coordinates, 3 * local_.size());
-    const Row log_area  = (d_a.row(0) * b[1] - d_a.row(1) * b[0] + a[0] * d_b.row(1) - a[1] * d_b.row(0)) / twice_area;
+    Eigen::Matrix<double, n_coordinates, columns, Eigen::RowMajor> result;
+    const Row log_area = (d_a.row(0) * b[1] - d_a.row(1) * b[0] + a[0] * d_b.row(1) - a[1] * d_b.row(0)) / twice_area;
     if (face_.dual_slope() > 0.)
       for (unsigned int l = 0; l < local_.size(); ++l)
         d_coverage_.middleCols<3>(3 * local_.place[l]) +=
-            twice_area * rule.weight(place.q) * log_area.segment<3>(3 * l);
+            twice_area * rule.weight(place.q) * log_area.template segment<3>(3 * l);
 
     // where the point is on the facet
     const FaceShape    shape(slave_.degree(), point.xi, point.eta);
@@ -211,34 +239,34 @@ namespace Nodus
     J.col(1)                      = frame.in_plane(facet.d_eta);
     const Eigen::Matrix2d inverse = J.inverse();
     Row2                  motion  = first + r * d_a + s * d_b + frame.height(facet.x) * frame.tilt;
-    Row2                  nodes   = Row2::Zero(2, 3 * local_.size()); // of the same point of the slave face
+    Row2                  nodes   = Row2::Zero(); // of the same point of the slave face
     for (unsigned int n = 0; n < shape.n; ++n)
-      nodes.middleCols<3>(3 * n) = shape.value[n] * frame.axes;
+      nodes.template middleCols<3>(3 * n) = shape.value[n] * frame.axes;
     motion -= nodes;
-    result.middleRows<2>(1) = inverse * motion;
+    result.template middleRows<2>(1) = inverse * motion;
 
     // straight across, on the smoothed faces
     const FaceGeometry x = slave_.at(face_.face, point.xi, point.eta),
                        y = master_.at(polygon.master, point.master.xi, point.master.eta);
     J.col(0)             = frame.in_plane(x.d_xi);
     J.col(1)             = frame.in_plane(x.d_eta);
-    motion               = J * result.middleRows<2>(1) + nodes + (frame.height(y.x) - frame.height(x.x)) * frame.tilt;
+    motion = J * result.template middleRows<2>(1) + nodes + (frame.height(y.x) - frame.height(x.x)) * frame.tilt;
     const FaceShape master_shape(master_.degree(), point.master.xi, point.master.eta);
     for (unsigned int n = 0; n < master_shape.n; ++n)
-      motion.middleCols<3>(3 * (local_.n_slave + n)) -= master_shape.value[n] * frame.axes;
-    J.col(0)                = frame.in_plane(y.d_xi);
-    J.col(1)                = frame.in_plane(y.d_eta);
-    result.middleRows<2>(3) = J.inverse() * motion;
+      motion.template middleCols<3>(3 * (local_.n_slave + n)) -= master_shape.value[n] * frame.axes;
+    J.col(0)                         = frame.in_plane(y.d_xi);
+    J.col(1)                         = frame.in_plane(y.d_eta);
+    result.template middleRows<2>(3) = J.inverse() * motion;
 
     // weight: area in the plane times the surface element over that in the plane
-    result.row(0)       = log_area + element_gradient(shape, point.xi, point.eta, result);
+    result.row(0)       = log_area + element_gradient<Row>(shape, point.xi, point.eta, result);
     const auto   second = curvature(slave_.face(face_.face), slave_.positions(), slave_.degree(), point.xi, point.eta);
     const double heights[2] = {facet.d_xi * frame.plane.normal, facet.d_eta * frame.plane.normal};
     for (unsigned int i = 0; i < 2; ++i)
     {
       const Eigen::RowVector2d dual = inverse.row(i);
       for (unsigned int n = 0; n < shape.n; ++n)
-        result.block<1, 3>(0, 3 * n) -= (i == 0 ? shape.d_xi : shape.d_eta)[n] * dual * frame.axes;
+        result.template block<1, 3>(0, 3 * n) -= (i == 0 ? shape.d_xi : shape.d_eta)[n] * dual * frame.axes;
       result.row(0) += heights[i] * dual * frame.tilt;
       for (unsigned int j = 0; j < 2; ++j)
         result.row(0) -= dual.dot(frame.in_plane(second[i + j])) * result.row(1 + j);
@@ -267,7 +295,7 @@ namespace Nodus
     const FaceShape shape(slave_.degree(), point.xi, point.eta);
     const Point     p      = slave_.at(face_.face, point.xi, point.eta).x;
     Gradient        result = Gradient::Zero(n_coordinates, 3 * local_.size());
-    result.row(0)          = element_gradient(shape, point.xi, point.eta, result);
+    result.row(0)          = element_gradient<Row>(shape, point.xi, point.eta, result);
     const auto add_slave   = [&](const unsigned int row, const Vector3 &dual)
     {
       for (unsigned int n = 0; n < shape.n; ++n)
@@ -299,23 +327,19 @@ namespace Nodus
     return result;
   }
 
-  /// Of the logarithm of the surface element that areas are measured with.
-  FaceVariation::Row FaceVariation::element_gradient(const FaceShape &shape,
-                                                     const double     xi,
-                                                     const double     eta,
-                                                     const Gradient  &gradient) const
+  FaceVariation::Row
+  FaceVariation::fixed_element_gradient(const FaceShape &shape, const double xi, const double eta) const
   {
-    const SurfaceFace &face   = slave_.face(face_.face);
-    const auto         dual   = dual_tangents(FaceGeometry(face, shape, measure_));
-    const auto         second = curvature(face, measure_, slave_.degree(), xi, eta);
-    Row                result = Row::Zero(1, gradient.cols());
-    for (unsigned int i = 0; i < 2; ++i)
-    {
-      for (unsigned int n = 0; n < shape.n && current_; ++n)
-        result.segment<3>(3 * n) += (i == 0 ? shape.d_xi : shape.d_eta)[n] * eigen(dual[i]);
-      for (unsigned int j = 0; j < 2; ++j)
-        result += dual[i] * second[i + j] * gradient.row(1 + j);
-    }
-    return result;
+    return element_gradient<Row>(shape, xi, eta, Gradient(Gradient::Zero(n_coordinates, 3 * local_.size())));
+  }
+
+  void FaceVariation::add_all_points()
+  {
+    if (face_.trace.places.empty())
+      add_fixed_points();
+    else if (slave_.degree() == 1)
+      add_segments<24>();
+    else
+      add_segments<54>();
   }
 } // namespace Nodus

@@ -1,7 +1,9 @@
 // The contact tangent with the variation of the geometry against central differences of the contact residual with
 // pairing renewed at every step, on bumpy surfaces that do not match: nodal forces kept (multipliers follow the areas),
 // friction multipliers turned with the frames, all as the solver does. Frictionless, sticking, slipping and tied; slave
-// faces that stick out of the master; bodies that have turned by 70 degrees in the increment.
+// faces that stick out of the master; bodies that have turned by 70 degrees in the increment. Exact but for how
+// smoothing shifts points along averaged surfaces, and for the areas of the nodal scheme with friction
+// (geometry_tangent.h).
 
 #include "contact/geometry_tangent.h"
 #include "contact/site_values.h"
@@ -57,7 +59,6 @@ namespace
       for (unsigned int k = 0; k < fixture.state.lambda.size(); ++k)
       {
         force_.push_back(fixture.state.lambda[k] * fixture.weights.area()[k]);
-        traction_.push_back(fixture.status->threshold(k));
       }
     }
 
@@ -143,7 +144,7 @@ namespace
     ContactFixture                    &fixture_;
     const Pairing                      before_;
     std::vector<std::array<double, 2>> Lambda_;
-    std::vector<double>                force_, traction_;
+    std::vector<double>                force_;
   };
 
   Vector3 turned(const Vector3 &x, const double degrees)
@@ -280,13 +281,15 @@ namespace
           left[what]              = std::max(left[what], std::abs(scale[row] * frozen(row, column) - difference[row]));
         }
       }
+    std::ostringstream tolerance;
+    tolerance << kind.tolerance;
     const char *const names[3] = {"forces", "gaps", "slips"};
     for (unsigned int what = 0; what < (kind.friction == Friction::none ? 2 : 3); ++what)
     {
       if (std::getenv("NODUS_TEST_LOG") != nullptr)
         std::cout << kind.name << ": " << names[what] << " " << error[what] << " of " << left[what] << " = "
                   << error[what] / left[what] << std::endl;
-      check(kind.name + ": variation of " + names[what] + " within " + std::to_string(kind.tolerance),
+      check(kind.name + ": variation of " + names[what] + " within " + tolerance.str(),
             error[what] <= kind.tolerance * left[what] || error[what] < 1e-8);
     }
   }
@@ -296,7 +299,7 @@ namespace
     constexpr auto nodal = Pair::Scheme::nodal, averaged = Pair::Scheme::averaged;
     constexpr auto faceted = Pair::Surface::faceted, smoothed = Pair::Surface::smoothed;
     Kind           nodal_facets{"nodal, facets", nodal, faceted}, plain{"averaged, facets", averaged, faceted},
-        smooth{"averaged, smoothed", averaged, smoothed};
+        smooth{"averaged, smoothed", averaged, smoothed, Friction::none, 3e-3};
     std::vector<Kind> result;
     const auto        add = [&](Kind kind, const std::string &name, const auto &change)
     {
