@@ -4,6 +4,7 @@
 #include "contact/contact_geometry.h"
 #include "contact/segments.h"
 
+#include <array>
 #include <vector>
 
 namespace Nodus
@@ -50,18 +51,31 @@ namespace Nodus
       return rows_[slave];
     }
 
-    /// A slave face of this rank: its points (of rigid masters without master) and the share of their jumps in the rows
-    /// of its nodes.
+    /// A slave face: its points, of rigid masters without master.
     struct Face
     {
       unsigned int             pair, face;
       std::vector<MortarPoint> points;
-      std::vector<double>      psi; ///< per point and node of the face: weight times psi [area]
+      SegmentTrace             trace; ///< of segments
+      double                   coverage = 0.;
+
+      /// Part of the dual functions in psi, the rest being hats, and how it changes with the coverage.
+      double dual_part() const;
+      double dual_slope() const;
     };
+    /// Finds the points of a face of a pair with the averaged scheme; @p rule: face_rule() of the pair.
+    static void find_points(const ContactPairParameters &pair,
+                            const ContactGeometry       &geometry,
+                            const dealii::Quadrature<2> &rule,
+                            Face                        &face);
+
+    /// Those of this rank.
     const std::vector<Face> &faces() const
     {
       return faces_;
     }
+    /// Bilinear hats of the nodes: on the face, or on the quarters of one of degree 2.
+    static std::array<double, 9> hats(unsigned int degree, double xi, double eta);
 
   private:
     std::vector<Face> faces_;

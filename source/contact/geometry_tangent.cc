@@ -1,6 +1,8 @@
 #include "contact/geometry_tangent.h"
+#include "contact/face_rule.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace Nodus
 {
@@ -8,14 +10,20 @@ namespace Nodus
   {
     constexpr unsigned int no_site = dealii::numbers::invalid_unsigned_int;
 
-    void add_shape(const SurfaceFace                &face,
-                   const std::array<double, 9>      &value,
-                   const double                      sign,
-                   std::vector<JumpOperator::Entry> &entries)
+    Eigen::RowVector3d eigen(const Vector3 &v)
     {
-      for (unsigned int n = 0; n < face.nodes.size(); ++n)
-        if (std::abs(value[n]) > 1e-15)
-          entries.push_back({face.nodes[n], sign * value[n]});
+      return {v[0], v[1], v[2]};
+    }
+    Eigen::Matrix3d eigen(const dealii::Tensor<2, dim> &m)
+    {
+      Eigen::Matrix3d result;
+      for (unsigned int i = 0; i < dim; ++i)
+        result.row(i) = eigen(m[i]);
+      return result;
+    }
+    dealii::Tensor<2, dim> identity()
+    {
+      return dealii::unit_symmetric_tensor<dim>();
     }
   } // namespace
 
@@ -35,9 +43,14 @@ namespace Nodus
       , jump_(jump)
       , weights_(weights)
       , status_(status)
+      , sources_(surfaces, geometry)
       , gap_rows_(surfaces.n_sites())
+      , weight_(surfaces.n_sites(), 0.)
   {
     for (const ContactPoint &point : weights_.points())
+    {
+      if (point.site == no_site && point.slaves.size() == 1)
+        weight_[point.slaves[0]] = point.weight;
       for (unsigned int a = 0; a < point.slaves.size(); ++a)
         if (point.site != no_site)
         {
@@ -48,286 +61,360 @@ namespace Nodus
           for (unsigned int b = 0; b < point.slaves.size(); ++b)
             if (status_.contact(point.slaves[b]))
               gap_rows_[point.slaves[b]].emplace_back(point.slaves[a], -point.weight * point.shape[a] * point.shape[b]);
-  }
-
-  GeometryTangent::ProjectedPoint GeometryTangent::slave_point(const unsigned int site) const
-  {
-    ProjectedPoint point;
-    if (surfaces_.is_point(site))
-    {
-      const SlavePoint &p = surfaces_.point(site);
-      add_shape(
-          surfaces_.slave_faces(p.pair)[p.face], FaceShape(surfaces_.degree(), p.xi, p.eta).value, 1., point.motion);
     }
-    else
-      point.motion.push_back({surfaces_.slave_nodes()[site].node, 1.});
-    return point;
   }
 
-  void GeometryTangent::project(const unsigned int pair, const Projection &master, ProjectedPoint &point) const
+  /// The face variations that the sites at hand need: made when the first site asks, dropped after the last one.
+  class GeometryTangent::Faces
   {
-    const SurfaceGeometry &surface = geometry_.master[pair];
-    const SurfaceFace     &face    = surface.face(master.face);
-    const FaceShape        shape(surfaces_.degree(), master.xi, master.eta);
-    add_shape(face, shape.value, -1., point.motion);
-    add_shape(face, shape.d_xi, 1., point.shape[0]);
-    add_shape(face, shape.d_eta, 1., point.shape[1]);
-
-    const FaceGeometry x = surface.at(master.face, master.xi, master.eta);
-    point.tangent[0]     = x.d_xi;
-    point.tangent[1]     = x.d_eta;
-    const bool   held[2] = {master.xi <= 0. || master.xi >= 1., master.eta <= 0. || master.eta >= 1.};
-    const double a = x.d_xi * x.d_xi, b = x.d_xi * x.d_eta, c = x.d_eta * x.d_eta, det = a * c - b * b;
-    if (!held[0])
-      point.dual[0] = held[1] ? x.d_xi / a : (c * x.d_xi - b * x.d_eta) / det;
-    if (!held[1])
-      point.dual[1] = held[0] ? x.d_eta / c : (a * x.d_eta - b * x.d_xi) / det;
-  }
-
-  /// The point moves on the surface along the principal directions.
-  void GeometryTangent::project_on_rigid(const RigidSurface &master, const Point &p, ProjectedPoint &point) const
-  {
-    const RigidPoint closest = master.closest(p);
-    for (unsigned int alpha = 0; alpha < 2; ++alpha)
+  public:
+    Faces(const GeometryTangent &tangent, const std::vector<char> &active)
+        : tangent_(tangent)
+        , X_(tangent.surfaces_.positions(std::vector<Vector3>(tangent.surfaces_.nodes().size())))
+        , of_site_(tangent.surfaces_.n_owned_slave_nodes())
     {
-      point.tangent[alpha] = closest.direction[alpha];
-      point.dual[alpha]    = closest.slide() * closest.direction[alpha];
+      for (const AveragedJump::Face &face : tangent.averaged_.faces())
+        note(face, active);
+      find_foreign(active);
     }
-    if (const RigidCarrier *const carrier = master.carrier())
+
+    /// Calls f(variation, number of the site among the slave nodes of the face) for the faces around a site.
+    template <typename Function>
+    void for_each(const unsigned int site, const Function &f)
     {
-      const RigidCarrier::Weights weights = carrier->weights(p);
-      for (unsigned int i = 0; i < weights.size(); ++i)
+      for (const unsigned int i : of_site_[site])
       {
-        point.motion.push_back({carrier->nodes()[i], -weights[i]});
-        for (unsigned int alpha = 0; alpha < 2; ++alpha)
-          point.shape[alpha].push_back({carrier->nodes()[i], carrier->gradients()[i] * point.tangent[alpha]});
-      }
-    }
-  }
-
-  std::vector<NodeDerivative> GeometryTangent::normal_derivative(const unsigned int site) const
-  {
-    using Normal = ContactPairParameters::Normal;
-    std::vector<NodeDerivative> derivative;
-    const unsigned int          p      = surfaces_.pair(site);
-    const Projection           &master = pairing_[site].master;
-    if (pairs_[p].normal == Normal::slave)
-      return derivative;
-    if (geometry_.rigid[p] != nullptr)
-    {
-      const Point      x     = geometry_.position(surfaces_, site);
-      const RigidPoint point = geometry_.rigid[p]->closest(x);
-      for (const Entry &e : slave_point(site).motion)
-        Nodus::add(derivative, e.node, -e.weight * point.normal_derivative());
-      if (const RigidCarrier *const carrier = geometry_.rigid[p]->carrier())
-      {
-        const RigidCarrier::Weights weights = carrier->weights(x);
-        for (unsigned int i = 0; i < weights.size(); ++i)
+        Around &around = faces_[i];
+        if (!around.variation)
         {
-          Matrix3 value = weights[i] * point.normal_derivative();
-          for (unsigned int c = 0; c < dim; ++c) // the normal turns with the body
-            value[c][c] -= carrier->gradients()[i] * point.normal;
-          Nodus::add(derivative, carrier->nodes()[i], value);
+          const unsigned int p       = around.face->pair;
+          const auto        &pair    = tangent_.pairs_[p];
+          const bool         current = pair.surface_measure == ContactPairParameters::SurfaceMeasure::current;
+          around.variation           = std::make_unique<FaceVariation>(pair,
+                                                             tangent_.geometry_,
+                                                             tangent_.sources_,
+                                                             *around.face,
+                                                             current ? tangent_.geometry_.slave[p].positions() : X_,
+                                                             current);
         }
+        const auto &slaves = tangent_.surfaces_.slave_faces(around.face->pair)[around.face->face].slaves;
+        f(*around.variation, std::find(slaves.begin(), slaves.end(), site) - slaves.begin());
       }
-      return derivative;
     }
-    if (!master.found())
-      return derivative;
-
-    const SurfaceGeometry &surface   = geometry_.master[p];
-    const bool             averaging = pairs_[p].normal == Normal::averaged;
-    if (averaging)
-      surface.averaged_normal_derivative(master.face, master.xi, master.eta, derivative);
-    else
-      surface.normal_derivative(master.face, master.xi, master.eta, derivative);
-    for (NodeDerivative &d : derivative)
-      d.value = -d.value;
-
-    ProjectedPoint point = slave_point(site);
-    project(p, master, point);
-    for (unsigned int alpha = 0; alpha < 2; ++alpha)
+    void done(const unsigned int site)
     {
-      constexpr double step = 1e-5; // the normal is smooth in the face
-      const double     dx = alpha == 0 ? step : 0., dy = alpha == 1 ? step : 0.;
-      const auto       normal = [&](const double sign)
-      {
-        const double xi = master.xi + sign * dx, eta = master.eta + sign * dy;
-        return averaging ? surface.averaged_normal(master.face, xi, eta) : surface.normal(master.face, xi, eta);
-      };
-      const Vector3 slope = (normal(-1.) - normal(1.)) / (2. * step);
-      for (const Entry &e : point.motion)
-        Nodus::add(derivative, e.node, e.weight * dealii::outer_product(slope, point.dual[alpha]));
+      for (const unsigned int i : of_site_[site])
+        if (--faces_[i].wanted == 0)
+          faces_[i].variation.reset();
     }
-    return derivative;
-  }
 
-  void GeometryTangent::add_point(const ProjectedPoint &point, const ContactResidual &residual, Blocks &blocks) const
-  {
-    Vector3 force;
-    for (const auto &[site, weight] : point.sites)
-      force += weight * residual.jump[site];
-    unsigned int column[2 * 9];
-    for (unsigned int e = 0; e < point.motion.size(); ++e)
-      column[e] = blocks.node(point.motion[e].node);
-    for (unsigned int alpha = 0; alpha < 2; ++alpha)
+  private:
+    struct Around
     {
-      if (point.dual[alpha] == Vector3())
-        continue;
-      const Matrix3 slide = dealii::outer_product(force, point.dual[alpha]);
-      for (const Entry &row : point.shape[alpha])
-      {
-        const unsigned int first = blocks.node(row.node) * blocks.stride;
-        for (unsigned int e = 0; e < point.motion.size(); ++e)
-          blocks.force[first + column[e]] -= row.weight * point.motion[e].weight * slide;
-      }
-      for (const auto &[site, weight] : point.sites)
-        for (const auto &[k, coefficient] : gap_rows_[site])
+      const AveragedJump::Face      *face;
+      unsigned int                   wanted;
+      std::unique_ptr<FaceVariation> variation;
+    };
+
+    void note(const AveragedJump::Face &face, const std::vector<char> &active)
+    {
+      unsigned int wanted = 0;
+      for (const unsigned int k : tangent_.surfaces_.slave_faces(face.pair)[face.face].slaves)
+        if (k < of_site_.size() && active[k])
         {
-          const unsigned int first = blocks.slave(k) * blocks.stride;
-          const double       slope = -coefficient * weight * (pairing_[site].normal * point.tangent[alpha]);
-          for (unsigned int e = 0; e < point.motion.size(); ++e)
-            blocks.gap[first + column[e]] += slope * point.motion[e].weight * point.dual[alpha];
+          of_site_[k].push_back(faces_.size());
+          ++wanted;
+        }
+      if (wanted > 0)
+        faces_.push_back({&face, wanted, nullptr});
+    }
+
+    /// Faces of other ranks at sites of this one: their masters are here, too.
+    void find_foreign(const std::vector<char> &active)
+    {
+      const ContactSurfaces &surfaces = tangent_.surfaces_;
+      const unsigned int     rank     = dealii::Utilities::MPI::this_mpi_process(surfaces.layout().communicator);
+      for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
+        if (tangent_.pairs_[p].scheme == ContactPairParameters::Scheme::averaged)
+        {
+          const auto rule = face_rule(tangent_.pairs_[p], surfaces.degree());
+          for (unsigned int f = 0; f < surfaces.slave_faces(p).size(); ++f)
+          {
+            const SurfaceFace &face = surfaces.slave_faces(p)[f];
+            if (face.owner == rank ||
+                std::none_of(face.slaves.begin(),
+                             face.slaves.end(),
+                             [&](const unsigned int k) { return k < of_site_.size() && active[k]; }))
+              continue;
+            foreign_.push_back(std::make_unique<AveragedJump::Face>(AveragedJump::Face{p, f, {}, {}, 0.}));
+            AveragedJump::find_points(tangent_.pairs_[p], tangent_.geometry_, rule, *foreign_.back());
+            note(*foreign_.back(), active);
+          }
         }
     }
+
+    const GeometryTangent                           &tangent_;
+    std::vector<Point>                               X_;
+    std::vector<std::vector<unsigned int>>           of_site_;
+    std::vector<Around>                              faces_;
+    std::vector<std::unique_ptr<AveragedJump::Face>> foreign_;
+  };
+
+  void GeometryTangent::vary(const unsigned int     site,
+                             const ContactState    &state,
+                             const ContactResidual &residual,
+                             const bool             follows,
+                             Faces                 &faces,
+                             SiteVariation         &variation,
+                             GeometryCouplings     &couplings) const
+  {
+    variation.clear();
+    for (const Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
+    {
+      variation.node(e->node);
+      variation.column(e->node);
+    }
+    const std::vector<NodeDerivative> normal = normal_derivative(site);
+    for (const NodeDerivative &d : normal)
+      variation.column(d.node);
+    if (averages(site))
+    {
+      faces.for_each(site, [&](const FaceVariation &face, const unsigned int) { variation.number(surfaces_, face); });
+      variation.allocate();
+      faces.for_each(site,
+                     [&](const FaceVariation &face, const unsigned int a)
+                     {
+                       variation.add_face(surfaces_, face, a);
+                       add_parts(site, face, a, couplings);
+                     });
+      variation.take_means(averaged_.row(site));
+      faces.done(site);
+    }
+    else
+    {
+      const auto motion = projection_motion(site);
+      add_projection(site, motion, variation);
+    }
+    for (const NodeDerivative &d : normal)
+      variation.add(variation.normal(), variation.column(d.node), d.value);
+
+    const Eigen::RowVectorXd gap = gap_variation(site, state, variation);
+    for (const auto &[k, coefficient] : gap_rows_[site])
+      couplings.add_gap(k, variation.columns(), coefficient * gap);
+    if (averages(site) && !averaged_.row(site).master.empty())
+      variation.balance(pairing_[site],
+                        tangent_derivatives(site),
+                        averaged_.row(site),
+                        geometry_.slave[surfaces_.pair(site)].positions());
+    couple(site, state, residual, law(site, state, residual, follows), variation, couplings);
   }
 
-  void GeometryTangent::add_offset(const unsigned int    side,
-                                   const unsigned int    face,
-                                   const double          xi,
-                                   const double          eta,
-                                   const ProjectedPoint &point,
-                                   Blocks               &blocks) const
+  void GeometryTangent::add_parts(const unsigned int   site,
+                                  const FaceVariation &face,
+                                  const unsigned int   a,
+                                  GeometryCouplings   &couplings) const
   {
-    const unsigned int pair = surfaces_.pair(point.sites[0].first);
-    if (!(side == 0 ? geometry_.slave : geometry_.master)[pair].smoothed())
+    Matrix gap(1, 3 * face.parts().size());
+    for (unsigned int i = 0; i < face.parts().size(); ++i)
+      gap.middleCols<3>(3 * i) = face.part_weight(a, i) / averaged_.row(site).area * eigen(pairing_[site].normal);
+    for (const auto &[k, coefficient] : gap_rows_[site])
+      couplings.add_gap(k, face.parts(), coefficient * gap);
+  }
+
+  Eigen::RowVectorXd GeometryTangent::gap_variation(const unsigned int   site,
+                                                    const ContactState  &state,
+                                                    const SiteVariation &variation) const
+  {
+    const Vector3      n    = pairing_[site].normal;
+    const Matrix      &rows = variation.rows();
+    Vector3            jump = jump_.jump(site, state.x);
+    Eigen::RowVectorXd gap  = eigen(n) * rows.middleRows<3>(variation.offset());
+    for (unsigned int e = 0; e < variation.nodes().size(); ++e)
+      gap += n * state.x[variation.nodes()[e]] * rows.row(e);
+    if (averages(site)) // what is found at fixed geometry has the weights after the balance
+    {
+      const AveragedJump::Row &row = averaged_.row(site);
+      jump                         = row.offset - row.rigid.x;
+      for (const auto *const entries : {&row.slave, &row.master})
+        for (const Entry &e : *entries)
+          jump += e.weight * state.x[e.node];
+      for (const Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
+        gap.segment<3>(3 * variation.place_of_source(e->node)) +=
+            (variation.weights()[variation.place_of_node(e->node)] - e->weight) * eigen(n);
+    }
+    gap += eigen(jump) * rows.middleRows<3>(variation.normal());
+    return gap;
+  }
+
+  void GeometryTangent::couple(const unsigned int     site,
+                               const ContactState    &state,
+                               const ContactResidual &residual,
+                               const Law             &law,
+                               const SiteVariation   &variation,
+                               GeometryCouplings     &couplings) const
+  {
+    const Matrix &rows = variation.rows();
+    const auto    area = rows.row(variation.area());
+    Matrix        slip = -rows.middleRows<3>(variation.moved());
+    for (unsigned int e = 0; e < variation.nodes().size(); ++e)
+      slip += eigen(state.increment[variation.nodes()[e]]).transpose() * rows.row(e);
+    const auto normal = rows.middleRows<3>(variation.normal());
+
+    const Matrix turned =
+        eigen(law.force_normal) * normal + eigen(law.force_slip) * slip + eigen(law.force_area).transpose() * area;
+    const Eigen::Vector3d force = eigen(residual.jump[site]).transpose();
+    std::vector<double>   weight(variation.nodes().size(), 0.);
+    for (const Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
+      weight[variation.place_of_node(e->node)] = e->weight;
+    Matrix block(dim, rows.cols());
+    for (unsigned int e = 0; e < variation.nodes().size(); ++e)
+    {
+      block = force * rows.row(e) + weight[e] * turned;
+      couplings.add_force(variation.nodes()[e], variation.columns(), block);
+    }
+    if (weight_[site] > 0. && status_.friction(site))
+    {
+      Matrix friction(2, rows.cols());
+      for (unsigned int i = 0; i < 2; ++i)
+        friction.row(i) = eigen(law.row_normal[i]) * normal + eigen(law.row_slip[i]) * slip + law.row_area[i] * area;
+      couplings.add_friction(site, variation.columns(), friction);
+    }
+  }
+
+  /// With the rule of Pairing: the first tangent is the projection of a fixed direction, or lies across the held one.
+  std::array<dealii::Tensor<2, dim>, 2> GeometryTangent::tangent_derivatives(const unsigned int site) const
+  {
+    const SitePairing     &frame = pairing_[site];
+    const auto            &pair  = pairs_[surfaces_.pair(site)];
+    const Vector3         &n = frame.normal, &t = frame.tangent[0], &s = frame.tangent[1];
+    std::array<Matrix3, 2> result;
+    if (!frame.tangent_free[0])
+      return result;
+    if (!frame.tangent_free[1])
+    {
+      const Vector3 in_plane = dealii::cross_product_3d(t, s);
+      result[0]              = -1. / (n * in_plane) * dealii::outer_product(in_plane, t);
+      return result;
+    }
+    Vector3 along;
+    along[std::abs(n[0]) > 0.999 ? 2 : 0] = 1.;
+    if (pair.second_friction_coefficient > 0.)
+    {
+      const Vector3 direction = pair.friction_direction / pair.friction_direction.norm();
+      if ((direction - (direction * n) * n).norm() > 1e-6)
+        along = direction;
+    }
+    const double spin = (along * n) / (along - (along * n) * n).norm();
+    result[0]         = -dealii::outer_product(n, t) - spin * dealii::outer_product(s, s);
+    result[1]         = -dealii::outer_product(n, s) + spin * dealii::outer_product(t, s);
+    return result;
+  }
+
+  GeometryTangent::Law GeometryTangent::law(const unsigned int     site,
+                                            const ContactState    &state,
+                                            const ContactResidual &residual,
+                                            const bool             follows) const
+  {
+    const Vector3 n = pairing_[site].normal, r = residual.jump[site];
+    Law           law;
+    law.force_normal = (r * n) * identity();
+    if (weight_[site] > 0. && status_.friction(site))
+      add_friction(site, state, follows, law);
+    else // delta r = (r.n) delta n - n (r_tau . delta n)
+      law.force_normal -= dealii::outer_product(n, r - (r * n) * n);
+    return law;
+  }
+
+  /// The laws of ContactAssembler at a point with one node.
+  void
+  GeometryTangent::add_friction(const unsigned int site, const ContactState &state, const bool follows, Law &law) const
+  {
+    const SitePairing           &frame     = pairing_[site];
+    const std::array<Matrix3, 2> turn      = tangent_derivatives(site);
+    const double                 threshold = status_.threshold(site), area = weight_[site], factor = area * threshold;
+    const auto                  &Lambda = state.Lambda[site];
+    const Vector3                jump   = jump_.jump_of_increment(site, state.increment);
+    Vector3                      direction;         // Lambda as a vector in space
+    Matrix3                      projector, turned; // turned: how the caller turns it with the frame
+    for (unsigned int i = 0; i < 2; ++i)
+      if (frame.tangent_free[i])
+      {
+        direction += Lambda[i] * frame.tangent[i];
+        projector += frame.friction_scale[i] * dealii::outer_product(frame.tangent[i], frame.tangent[i]);
+        turned += Lambda[i] * turn[i];
+      }
+    if (frame.tangent_free[1])
+      turned += dealii::outer_product(Lambda[1] * frame.tangent[0] - Lambda[0] * frame.tangent[1],
+                                      frame.tangent[1] * turn[0]);
+    // the projector turns with the tangents
+    const auto projected = [&](const Vector3 &v)
+    {
+      Matrix3 result;
+      for (unsigned int i = 0; i < 2; ++i)
+        if (frame.tangent_free[i])
+          result += frame.friction_scale[i] *
+                    (dealii::outer_product(frame.tangent[i], v * turn[i]) + (v * frame.tangent[i]) * turn[i]);
+      return result;
+    };
+
+    if (status_.stick(site))
+    {
+      law.force_normal -= factor * (projected(direction) + projector * turned);
+      law.force_area = -threshold * (projector * direction);
+      for (unsigned int i = 0; i < 2; ++i)
+        if (frame.tangent_free[i])
+        {
+          law.row_slip[i]   = -factor * frame.friction_scale[i] * frame.tangent[i];
+          law.row_normal[i] = -factor * frame.friction_scale[i] * (jump * turn[i]);
+        }
       return;
-    const double                sign  = side == 0 ? 1. : -1.;
-    const std::array<double, 8> value = SurfaceGeometry::offset_functions(xi, eta);
-    for (const auto &[site, weight] : point.sites)
-      for (const auto &[k, coefficient] : gap_rows_[site])
-      {
-        auto at = std::find_if(blocks.offsets.begin(),
-                               blocks.offsets.end(),
-                               [&, slave = k](const auto &e)
-                               { return e.slave == slave && e.side == side && e.face == face; });
-        if (at == blocks.offsets.end())
-          at = blocks.offsets.insert(at, {k, side, face, {}});
-        for (unsigned int part = 0; part < value.size(); ++part)
-          at->normal[part] += coefficient * weight * sign * value[part] * pairing_[site].normal;
-      }
-  }
-
-  void GeometryTangent::finish_offsets(const unsigned int pair, Blocks &blocks) const
-  {
-    for (unsigned int i = 0; i < blocks.offsets.size(); ++i)
+    }
+    const double followed = follows ? status_.threshold_slope(site) * state.lambda[site] : 0.;
+    const double h        = status_.tangential_augmentation(site, threshold);
+    const bool   held     = status_.holds_friction(site);
+    Vector3      pi       = direction;
+    Matrix3      K_B;
+    if (!held)
     {
-      const unsigned int side = blocks.offsets[i].side, face = blocks.offsets[i].face;
-      const auto         same = [&](const unsigned int j)
-      { return blocks.offsets[j].side == side && blocks.offsets[j].face == face; };
-      bool done = false;
-      for (unsigned int j = 0; j < i; ++j)
-        done = done || same(j);
-      for (unsigned int part = 0; part < blocks.offsets[i].normal.size() && !done; ++part)
+      const Vector3 w    = direction + h * (projector * jump);
+      const double  norm = w.norm();
+      K_B                = identity();
+      pi                 = w;
+      if (norm >= 1. - 1e-7) // as in ContactAssembler
       {
-        const auto derivative = (side == 0 ? geometry_.slave : geometry_.master)[pair].offset_derivative(face, part);
-        for (unsigned int j = i; j < blocks.offsets.size(); ++j)
-          if (same(j))
-            for (const NodeDerivative &d : derivative)
-            {
-              const unsigned int column = blocks.node(d.node), row = blocks.slave(blocks.offsets[j].slave);
-              blocks.gap[row * blocks.stride + column] += blocks.offsets[j].normal[part] * d.value;
-            }
+        pi  = w / norm;
+        K_B = unit_derivative(w);
       }
     }
-    blocks.offsets.clear();
+    // pi follows Lambda, the slip and h, which is inverse to the threshold
+    const Matrix3 by_normal = held ? turned : Matrix3(K_B * (turned + h * projected(jump)));
+    const Matrix3 by_slip   = h * K_B * projector;
+    const Vector3 by_area   = h * followed / (threshold * area) * (K_B * (projector * jump));
+    law.force_normal -= factor * (projected(pi) + projector * by_normal);
+    law.force_slip = -factor * projector * by_slip;
+    law.force_area = -(threshold - followed) * (projector * pi) - factor * (projector * by_area);
+    for (unsigned int i = 0; i < 2 && !held; ++i)
+      if (frame.tangent_free[i])
+      {
+        law.row_normal[i] = factor / h * ((direction - pi) * turn[i] + frame.tangent[i] * (turned - by_normal));
+        law.row_slip[i]   = -factor / h * (frame.tangent[i] * by_slip);
+        law.row_area[i]   = -factor / h * (frame.tangent[i] * by_area);
+      }
   }
 
   void GeometryTangent::add(const ContactState &state, const ContactResidual &residual, LinearSystem &system) const
   {
-    const auto active = [&](const unsigned int site) { return residual.jump[site].norm_square() > 0.; };
-
-    Sum            sum;
-    Blocks         blocks;
-    ProjectedPoint point; // kept: its lists are of the same lengths everywhere
-    for (const AveragedJump::Face &face : averaged_.faces())
-    {
-      blocks.clear();
-      const auto        &slaves = surfaces_.slave_faces(face.pair)[face.face].slaves;
-      const unsigned int n      = slaves.size();
-      for (unsigned int q = 0; q < face.points.size(); ++q)
-      {
-        point.clear();
-        for (unsigned int a = 0; a < n; ++a)
-          if (const unsigned int k = slaves[a]; averaged_.covered(k) && active(k))
-            point.sites.emplace_back(k, face.psi[n * q + a] / averaged_.row(k).area);
-        if (point.sites.empty())
-          continue;
-        const MortarPoint &p = face.points[q];
-        add_shape(surfaces_.slave_faces(face.pair)[face.face],
-                  FaceShape(surfaces_.degree(), p.xi, p.eta).value,
-                  1.,
-                  point.motion);
-        const RigidSurface *const rigid = geometry_.rigid[face.pair];
-        if (rigid != nullptr)
-          project_on_rigid(*rigid, geometry_.slave[face.pair].at(face.face, p.xi, p.eta).x, point);
-        else
-          project(face.pair, p.master, point);
-        add_point(point, residual, blocks);
-        add_offset(0, face.face, p.xi, p.eta, point, blocks);
-        if (rigid == nullptr)
-          add_offset(1, p.master.face, p.master.xi, p.master.eta, point, blocks);
-      }
-      finish_offsets(face.pair, blocks);
-      add_to(sum, blocks);
-    }
-
-    for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
-    {
-      const unsigned int        p     = surfaces_.pair(s);
-      const RigidSurface *const rigid = geometry_.rigid[p];
-      if (!surfaces_.is_owned(s) || !active(s) || !(rigid != nullptr || pairing_[s].master.found()))
-        continue;
-      blocks.clear();
-      if (pairs_[p].scheme != ContactPairParameters::Scheme::averaged)
-      {
-        ProjectedPoint point = slave_point(s);
-        if (rigid != nullptr)
-          project_on_rigid(*rigid, geometry_.position(surfaces_, s), point);
-        else
-          project(p, pairing_[s].master, point);
-        point.sites.emplace_back(s, 1.);
-        add_point(point, residual, blocks);
-        const Projection &master = pairing_[s].master;
-        if (surfaces_.is_point(s))
-          add_offset(0, surfaces_.point(s).face, surfaces_.point(s).xi, surfaces_.point(s).eta, point, blocks);
-        if (rigid == nullptr)
-          add_offset(1, master.face, master.xi, master.eta, point, blocks);
-        finish_offsets(p, blocks);
-      }
-      // r turns with the normal: delta r = (r.n) delta n - n (r_tau . delta n)
-      const Vector3 n = pairing_[s].normal, r = residual.jump[s], jump = jump_.jump(s, state.x);
-      Matrix3       turn = -dealii::outer_product(n, r - (r * n) * n);
-      for (unsigned int c = 0; c < dim; ++c)
-        turn[c][c] += r * n;
-      for (const NodeDerivative &d : normal_derivative(s))
-      {
-        const Matrix3      value  = turn * d.value;
-        const unsigned int column = blocks.node(d.node);
-        for (const Entry *e = jump_.begin(s); e != jump_.end(s); ++e)
-        {
-          const unsigned int row = blocks.node(e->node);
-          blocks.force[row * blocks.stride + column] += e->weight * value;
-        }
-        for (const auto &[k, coefficient] : gap_rows_[s])
-        {
-          const unsigned int row = blocks.slave(k);
-          blocks.gap[row * blocks.stride + column] += coefficient * (jump * d.value);
-        }
-      }
-      add_to(sum, blocks);
-    }
-    write(sum, state, system);
+    std::vector<char> active(surfaces_.n_sites(), 0);
+    for (unsigned int s = 0; s < active.size(); ++s)
+      active[s] = surfaces_.is_owned(s) && pairing_[s].found && residual.jump[s].norm_square() > 0. &&
+                  (averages(s) || geometry_.rigid[surfaces_.pair(s)] != nullptr || pairing_[s].master.found());
+    const bool        follows = !system.symmetric;
+    Faces             faces(*this, active);
+    SiteVariation     variation(surfaces_.nodes().size(), sources_.size());
+    GeometryCouplings couplings(surfaces_, sources_);
+    for (unsigned int s = 0; s < active.size(); ++s)
+      if (active[s])
+        vary(s, state, residual, follows, faces, variation, couplings);
+    couplings.write(state, system);
   }
-
 } // namespace Nodus

@@ -2,27 +2,30 @@
 #define nodus_contact_geometry_tangent_h
 
 #include "contact/contact_assembler.h"
+#include "contact/geometry_couplings.h"
+#include "contact/site_variation.h"
 
 #include <array>
-#include <cstdint>
-#include <unordered_map>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace Nodus
 {
-  /// What the contact terms gain in the tangent when pairing and frames follow the surfaces: the jump of a site is
-  /// sum_q c_q (x_slave(q) - x_master(xi_q)), and its normal n depends on the master (or slave) nodes and on xi.
+  /// What the contact terms gain in the tangent when pairing, areas and frames follow the surfaces: with the jump
+  /// [[x]] = G x + offset of a site, its normal n, its area m and r, work conjugate to the jump,
   ///
-  /// - contact forces: G^T delta r, where r (work conjugate to the jump) turns with n, and delta G^T r, where the
-  ///   projections slide, delta xi^alpha = x^alpha . delta(x_slave - x_master): exact where the surfaces touch;
-  /// - gaps: delta n . [[x]] - sum_q c_q n . x_,alpha delta xi^alpha (zero where n is the normal of the surface
-  ///   itself), and the change of the offsets of smoothed surfaces.
+  /// - contact forces: delta G^T r and G^T delta r, where r turns with the frame and follows the slip;
+  /// - gaps: n . (delta G x + delta offset) + delta n . [[x]];
+  /// - friction laws: delta G of the increment, and the frame.
   ///
-  /// On a rigid surface in closed form the curvature gives the variation of normals and points; where it moves as
-  /// prescribed no force slides.
+  /// What is kept is what the caller keeps from one pairing to the next: nodal contact forces m lambda, the tractions
+  /// of sticking sites, the length and direction of Lambda. Rows of multipliers are divided by area and threshold
+  /// before they vary: these are factors of laws that hold in the end.
   ///
-  /// Left out: the variation of areas and of the weights c_q (nodal forces do not depend on the areas, see
-  /// pair_surfaces), of slips and of normals averaged on the slave side, and the spin of the tangents about n.
+  /// Left out: how smoothing shifts points along the surfaces (FaceVariation), areas of the nodal scheme, slips where a
+  /// point has several nodes (consistent weights) or a site is an integration point, normals averaged over faces (of
+  /// slave nodes without a projection of their own).
   class GeometryTangent
   {
   public:
@@ -35,71 +38,64 @@ namespace Nodus
                     const SurfaceWeights                     &weights,
                     const Status                             &status);
 
-    /// Adds to the variation of @p system, after ContactAssembler::assemble returned @p residual. Collective.
+    /// Adds to the variation of @p system, after ContactAssembler::assemble returned @p residual; thresholds follow the
+    /// pressure where that has left the system unsymmetric. Collective.
     void add(const ContactState &state, const ContactResidual &residual, LinearSystem &system) const;
 
   private:
     using Matrix3 = dealii::Tensor<2, dim>;
+    using Matrix  = SiteVariation::Matrix;
     using Entry   = JumpOperator::Entry;
 
-    /// A projected point: where it moves and how xi follows.
-    struct ProjectedPoint
+    /// How the force of a site and its friction law follow normal, area and slip.
+    struct Law
     {
-      std::vector<Entry> motion;   ///< of x_slave - x_master at fixed xi
-      std::vector<Entry> shape[2]; ///< derivatives of the master shape functions
-      Vector3            dual[2];  ///< x^alpha, zero where xi^alpha is held at an edge of the face
-      Vector3            tangent[2];
-      std::vector<std::pair<unsigned int, double>> sites; ///< and c_q
-
-      void clear()
-      {
-        for (auto *const entries : {&motion, &shape[0], &shape[1]})
-          entries->clear();
-        dual[0] = dual[1] = Vector3();
-        sites.clear();
-      }
+      Matrix3 force_normal, force_slip;
+      Vector3 force_area, row_normal[2], row_slip[2];
+      double  row_area[2] = {0., 0.};
     };
-    ProjectedPoint slave_point(unsigned int site) const;
-    void           project(unsigned int pair, const Projection &master, ProjectedPoint &point) const;
-    void           project_on_rigid(const RigidSurface &master, const Point &p, ProjectedPoint &point) const;
+    std::array<Matrix3, 2> tangent_derivatives(unsigned int site) const;
+    Law  law(unsigned int site, const ContactState &state, const ContactResidual &residual, bool follows) const;
+    void add_friction(unsigned int site, const ContactState &state, bool follows, Law &law) const;
+
+    /// Derivatives with respect to sources.
+    using Motion = std::vector<std::pair<unsigned int, Vector3>>;
+    /// How the local coordinates of the projection of a site follow: of a rigid master, along its principal directions.
+    std::array<Motion, 2>       projection_motion(unsigned int site) const;
+    void                        add_slave_motion(unsigned int site, const Vector3 &dual, Motion &motion) const;
     std::vector<NodeDerivative> normal_derivative(unsigned int site) const;
+    std::vector<NodeDerivative> slave_normal_derivative(unsigned int site) const;
+    std::vector<NodeDerivative> rigid_normal_derivative(unsigned int site) const;
+    void add_projection(unsigned int site, const std::array<Motion, 2> &motion, SiteVariation &variation) const;
+    void add_slide(unsigned int site, const Motion &motion, unsigned int coordinate, SiteVariation &variation) const;
+    void
+    add_rigid_slide(unsigned int site, const Motion &motion, unsigned int coordinate, SiteVariation &variation) const;
 
-    /// Couplings of a few nodes, dense: blocks (row node, column node) of the force terms, gap rows (slave, column
-    /// node).
-    struct Blocks
+    /// Faces of the averaged scheme around the sites, as long as they are wanted.
+    class Faces;
+    void vary(unsigned int           site,
+              const ContactState    &state,
+              const ContactResidual &residual,
+              bool                   follows,
+              Faces                 &faces,
+              SiteVariation         &variation,
+              GeometryCouplings     &couplings) const;
+    void couple(unsigned int           site,
+                const ContactState    &state,
+                const ContactResidual &residual,
+                const Law             &law,
+                const SiteVariation   &variation,
+                GeometryCouplings     &couplings) const;
+    /// What the parts of offsets add to gaps.
+    void add_parts(unsigned int site, const FaceVariation &face, unsigned int a, GeometryCouplings &couplings) const;
+    /// Variation of the gap beside that at fixed geometry; before the balance of moments, which leaves gaps alone.
+    Eigen::RowVectorXd
+    gap_variation(unsigned int site, const ContactState &state, const SiteVariation &variation) const;
+
+    bool averages(const unsigned int site) const
     {
-      static constexpr unsigned int none = static_cast<unsigned int>(-1);
-
-      std::vector<unsigned int> nodes, slaves;
-      std::vector<unsigned int> place; ///< of a surface node in nodes, or none
-      unsigned int              stride = 0;
-      std::vector<Matrix3>      force; ///< row * stride + column
-      std::vector<Vector3>      gap;   ///< slave * stride + column
-      /// What the parts of the offset of a face add to the gap row of a slave: side 0 slave or 1 master.
-      struct Offset
-      {
-        unsigned int           slave, side, face;
-        std::array<Vector3, 8> normal;
-      };
-      std::vector<Offset> offsets;
-
-      void         clear();
-      unsigned int node(unsigned int n);
-      unsigned int slave(unsigned int k);
-    };
-    /// The offset at (xi, eta) of a face of a side is part of the jump at @p point.
-    void add_offset(
-        unsigned int side, unsigned int face, double xi, double eta, const ProjectedPoint &point, Blocks &blocks) const;
-    void finish_offsets(unsigned int pair, Blocks &blocks) const;
-    void add_point(const ProjectedPoint &point, const ContactResidual &residual, Blocks &blocks) const;
-    /// The same of all nodes: force blocks by row node * number of nodes + column node, gap rows by slave likewise.
-    struct Sum
-    {
-      std::unordered_map<std::uint64_t, Matrix3> force;
-      std::unordered_map<std::uint64_t, Vector3> gap;
-    };
-    void add_to(Sum &sum, const Blocks &blocks) const;
-    void write(const Sum &sum, const ContactState &state, LinearSystem &system) const;
+      return pairs_[surfaces_.pair(site)].scheme == ContactPairParameters::Scheme::averaged;
+    }
 
     const std::vector<ContactPairParameters>                 &pairs_;
     const ContactSurfaces                                    &surfaces_;
@@ -109,7 +105,9 @@ namespace Nodus
     const JumpOperator                                       &jump_;
     const SurfaceWeights                                     &weights_;
     const Status                                             &status_;
+    VariationSources                                          sources_;
     std::vector<std::vector<std::pair<unsigned int, double>>> gap_rows_; ///< per site: slave, d R_lambda / d d_n
+    std::vector<double>                                       weight_;   ///< of sites with a point of their own, or 0
   };
 } // namespace Nodus
 

@@ -10,6 +10,7 @@ namespace Nodus
 {
   namespace
   {
+    using namespace MomentBalance;
     using Entry = JumpOperator::Entry;
 
     /// A row of G while it is put together.
@@ -50,12 +51,6 @@ namespace Nodus
             add(side, face.nodes[n], sign * shape.value[n]);
       }
     };
-
-    /// Largest shift of a mean master point, in sizes of the surface of its slave node: of sites far from contact.
-    constexpr double largest_shift = 0.1;
-    /// Mean square distance of the master nodes, over the surface of the slave node, at which their mean is not moved,
-    /// and from which on it is in full.
-    constexpr double no_spread = 1e-3, full_spread = 1e-2;
 
     /// Averaged gaps vanish in the mean alone: gaps that are left between the points, on masters that are not flat, put
     /// the mean master point beside the normal through the slave node, and forces along that would turn the bodies. The

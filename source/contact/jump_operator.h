@@ -9,6 +9,16 @@
 
 namespace Nodus
 {
+  /// Bounds on the change of averaged master weights that keeps forces from turning the bodies.
+  namespace MomentBalance
+  {
+    /// Largest shift of a mean master point, in sizes of the surface of its slave node: of sites far from contact.
+    constexpr double largest_shift = 0.1;
+    /// Mean square distance of the master nodes, over the surface of the slave node, at which their mean is not moved,
+    /// and from which on it is in full.
+    constexpr double no_spread = 1e-3, full_spread = 1e-2;
+  } // namespace MomentBalance
+
   /// G: the jump of each contact site as a combination of nodal values, slave minus master (eq. 18, 22).
   ///
   /// The schemes differ in its rows alone: a slave node against the master shape functions at its projection (nodal),

@@ -22,27 +22,22 @@ namespace Nodus
       return a[0] * b[1] - a[1] * b[0];
     }
 
-    /// Plane through a slave cell: its outward normal and two axes.
-    struct Plane
-    {
-      Point   origin;
-      Vector3 normal, axis[2];
-
-      Point2 operator()(const Point &x) const
-      {
-        return Point2((x - origin) * axis[0], (x - origin) * axis[1]);
-      }
-    };
-
     /// A convex polygon; two quadrilaterals overlap in at most eight corners.
     struct Polygon
     {
-      std::array<Point2, 16> corner;
-      unsigned int           n = 0;
+      using Corner = SegmentTrace::Corner;
 
-      void add(const Point2 &p)
+      std::array<Point2, 16>        corner;
+      std::array<Corner, 16>        origin;
+      std::array<unsigned char, 16> line; ///< that the edge to the next corner lies on: of the master, slave_line +
+                                          ///< that of the slave
+      unsigned int n = 0;
+
+      void add(const Point2 &p, const Corner &what, const unsigned char along)
       {
-        corner[n++] = p;
+        corner[n] = p;
+        origin[n] = what;
+        line[n++] = along;
       }
       double area() const
       {
@@ -53,10 +48,13 @@ namespace Nodus
       }
       void make_counterclockwise()
       {
-        if (area() < 0.)
-          std::reverse(corner.begin(), corner.begin() + n);
+        if (area() >= 0.)
+          return;
+        std::reverse(corner.begin(), corner.begin() + n);
+        std::reverse(origin.begin(), origin.begin() + n);
       }
     };
+    constexpr unsigned char slave_line = 4;
 
     /// A cell as the plane sees it, counterclockwise, and its bounding box.
     struct Shadow
@@ -64,14 +62,14 @@ namespace Nodus
       Polygon polygon;
       Point2  low, high;
 
-      Shadow(const std::array<Point, 4> &corner, const Plane &plane)
+      Shadow(const std::array<Point, 4> &corner, const CellPlane &plane)
           : low(plane(corner[0]))
           , high(low)
       {
-        for (const Point &x : corner)
+        for (unsigned char i = 0; i < corner.size(); ++i)
         {
-          const Point2 p = plane(x);
-          polygon.add(p);
+          const Point2 p = plane(corner[i]);
+          polygon.add(p, {Polygon::Corner::of_master, {{i, i}}, {{i, i}}}, i);
           for (unsigned int c = 0; c < 2; ++c)
           {
             low[c]  = std::min(low[c], p[c]);
@@ -86,9 +84,33 @@ namespace Nodus
       }
     };
 
-    /// The part of @p polygon inside the convex @p window (Sutherland & Hodgman 1974).
-    Polygon clip(Polygon polygon, const Polygon &window)
+    /// Where the edge of @p polygon from corner @p i leaves the half plane of edge @p e of the @p window, or enters it.
+    SegmentTrace::Corner crossing(const Polygon     &polygon,
+                                  const unsigned int i,
+                                  const Polygon     &shadow,
+                                  const Polygon     &window,
+                                  const unsigned int e)
     {
+      SegmentTrace::Corner corner;
+      const auto of = [](const Polygon &cell, const unsigned int at) { return cell.origin[at % 4].master[0]; };
+      if (polygon.line[i] >= slave_line) // edges of the window meet in its corners
+      {
+        const unsigned int before = polygon.line[i] - slave_line;
+        const auto         at     = of(window, before == (e + 1) % 4 ? before : e);
+        corner.kind               = SegmentTrace::Corner::of_slave;
+        corner.slave              = {{at, at}};
+        return corner;
+      }
+      corner.kind   = SegmentTrace::Corner::crossing;
+      corner.master = {{of(shadow, polygon.line[i]), of(shadow, polygon.line[i] + 1u)}};
+      corner.slave  = {{of(window, e), of(window, e + 1)}};
+      return corner;
+    }
+
+    /// The part of @p shadow inside the convex @p window (Sutherland & Hodgman 1974).
+    Polygon clip(const Polygon &shadow, const Polygon &window)
+    {
+      Polygon polygon = shadow;
       for (unsigned int e = 0; e < window.n && polygon.n > 0; ++e)
       {
         const Point2 &a = window.corner[e], &b = window.corner[(e + 1) % window.n];
@@ -96,30 +118,29 @@ namespace Nodus
         Polygon       rest;
         for (unsigned int i = 0; i < polygon.n && rest.n + 2 < rest.corner.size(); ++i)
         {
-          const Point2 &p = polygon.corner[i], &q = polygon.corner[(i + 1) % polygon.n];
-          const double  s = inside(p), t = inside(q);
+          const Point2       &p = polygon.corner[i], &q = polygon.corner[(i + 1) % polygon.n];
+          const double        s = inside(p), t = inside(q);
+          const unsigned char along = t < 0. ? slave_line + e : polygon.line[i];
           if (s >= 0.)
-            rest.add(p);
+            rest.add(p, polygon.origin[i], s > 0. ? polygon.line[i] : along);
           if ((s > 0. && t < 0.) || (s < 0. && t > 0.))
-            rest.add(p + s / (s - t) * (q - p));
+            rest.add(p + s / (s - t) * (q - p), crossing(polygon, i, shadow, window, e), along);
         }
         polygon = rest;
       }
       return polygon;
     }
 
-    /// The cells of a face that are clipped: the face itself, or the quarters of one of degree 2.
     unsigned int n_cells(const unsigned int degree)
     {
       return degree * degree;
     }
     std::array<Point, 4> cell_corners(const SurfaceGeometry &surface, const unsigned int f, const unsigned int cell)
     {
-      const unsigned int degree = surface.degree(), n = degree + 1;
-      const unsigned int first = cell % degree + n * (cell / degree);
-      const auto        &nodes = surface.face(f).nodes;
-      const auto        &x     = surface.positions();
-      return {{x[nodes[first]], x[nodes[first + 1]], x[nodes[first + 1 + n]], x[nodes[first + n]]}};
+      std::array<Point, 4> corners;
+      for (unsigned int i = 0; i < 4; ++i)
+        corners[i] = surface.positions()[surface.face(f).nodes[cell_node(surface.degree(), cell, i)]];
+      return corners;
     }
     Vector3 cell_normal(const std::array<Point, 4> &corner, const double orientation)
     {
@@ -133,7 +154,7 @@ namespace Nodus
     public:
       /// @param node called as node(n) for the (degree + 1)^2 positions of the face
       template <typename Node>
-      FlatFace(const unsigned int degree, const Plane &plane, const Node &node)
+      FlatFace(const unsigned int degree, const CellPlane &plane, const Node &node)
           : degree_(degree)
       {
         for (unsigned int n = 0; n < (degree + 1) * (degree + 1); ++n)
@@ -189,28 +210,15 @@ namespace Nodus
     };
 
     /// Of the face with its smoothing.
-    FlatFace smooth_face(const SurfaceGeometry &surface, const unsigned int f, const Plane &plane)
+    FlatFace smooth_face(const SurfaceGeometry &surface, const unsigned int f, const CellPlane &plane)
     {
       const Point *const points = surface.shape_points(f);
       return FlatFace(surface.shape_degree(), plane, [&](const unsigned int n) { return points[n]; });
     }
-    FlatFace facet(const SurfaceGeometry &surface, const unsigned int f, const Plane &plane)
+    FlatFace facet(const SurfaceGeometry &surface, const unsigned int f, const CellPlane &plane)
     {
       return FlatFace(
           surface.degree(), plane, [&](const unsigned int n) { return surface.positions()[surface.face(f).nodes[n]]; });
-    }
-
-    /// The plane through the corners of a cell.
-    Plane plane_through(const std::array<Point, 4> &corner, const double orientation)
-    {
-      Plane plane;
-      plane.normal  = cell_normal(corner, orientation);
-      plane.origin  = corner[0];
-      plane.axis[0] = corner[1] - corner[0];
-      plane.axis[0] -= (plane.axis[0] * plane.normal) * plane.normal;
-      plane.axis[0] /= plane.axis[0].norm();
-      plane.axis[1] = dealii::cross_product_3d(plane.normal, plane.axis[0]);
-      return plane;
     }
 
     /// Box around a cell swept along its normal by @p reach to both sides.
@@ -230,7 +238,7 @@ namespace Nodus
     /// What a master cell covers of a slave cell, which is @p window in the @p plane; no corners where that is next to
     /// nothing or they do not face each other.
     Polygon overlap(const Shadow          &window,
-                    const Plane           &plane,
+                    const CellPlane       &plane,
                     const double           cell_area,
                     const SurfaceGeometry &master,
                     const unsigned int     m,
@@ -247,29 +255,47 @@ namespace Nodus
     }
   } // namespace
 
+  CellPlane::CellPlane(const std::array<Point, 4> &corner, const double orientation)
+      : origin(corner[0])
+      , normal(cell_normal(corner, orientation))
+  {
+    axis[0] = corner[1] - corner[0];
+    axis[0] -= (axis[0] * normal) * normal;
+    axis[0] /= axis[0].norm();
+    axis[1] = dealii::cross_product_3d(normal, axis[0]);
+  }
+
+  const dealii::Quadrature<2> &segment_rule(const unsigned int degree)
+  {
+    // the product of two shape functions has total degree 4 (Q1) or 8 (Q2)
+    static const dealii::Quadrature<2> rules[] = {dealii::QWitherdenVincentSimplex<2>(3, false),
+                                                  dealii::QWitherdenVincentSimplex<2>(5, false)};
+    return rules[degree - 1];
+  }
+
   double segment_points(const SurfaceGeometry    &slave,
                         const unsigned int        f,
                         const SurfaceGeometry    &master,
                         const MasterSearch       &search,
                         const double              reach,
-                        std::vector<MortarPoint> &points)
+                        std::vector<MortarPoint> &points,
+                        SegmentTrace             &trace)
   {
-    // the product of two shape functions has total degree 4 (Q1) or 8 (Q2)
-    static const dealii::Quadrature<2> rules[] = {dealii::QWitherdenVincentSimplex<2>(3, false),
-                                                  dealii::QWitherdenVincentSimplex<2>(5, false)};
-    const unsigned int                 degree  = slave.degree();
-    const auto                        &rule    = rules[degree - 1];
+    const unsigned int degree = slave.degree();
+    const auto        &rule   = segment_rule(degree);
+    trace.polygons.clear();
+    trace.places.clear();
 
     thread_local std::vector<unsigned int> candidates;
     points.clear();
     double face_area = 0., covered = 0.;
     for (unsigned int cell = 0; cell < n_cells(degree); ++cell)
     {
-      const auto     corner      = cell_corners(slave, f, cell);
-      const Plane    plane       = plane_through(corner, slave.face(f).orientation);
-      const FlatFace slave_facet = facet(slave, f, plane);
-      const Shadow   window(corner, plane);
-      const double   cell_area = window.polygon.area();
+      const auto      corner = cell_corners(slave, f, cell);
+      const CellPlane plane(corner, slave.face(f).orientation);
+      const FlatFace  slave_facet = facet(slave, f, plane);
+      const Shadow    window(corner, plane);
+      const double    cell_area = window.polygon.area();
       face_area += cell_area;
 
       search.candidates(swept_box(corner, plane.normal, reach), candidates);
@@ -279,6 +305,7 @@ namespace Nodus
           const Polygon polygon = overlap(window, plane, cell_area, master, m, master_cell);
           if (polygon.n == 0)
             continue;
+          trace.polygons.push_back({cell, m, master_cell, polygon.n, polygon.corner, polygon.origin});
           const FlatFace master_face = smooth_face(master, m, plane);
           double         xi = (cell % degree + 0.5) / degree, eta = (cell / degree + 0.5) / degree;
           double master_xi = (master_cell % degree + 0.5) / degree, master_eta = (master_cell / degree + 0.5) / degree;
@@ -292,6 +319,7 @@ namespace Nodus
               if (!slave_facet.invert(p, xi, eta))
               {
                 points.clear();
+                trace.places.clear();
                 return 0.; // the face is folded over: no partner
               }
               // the partner lies on the smoothed faces, straight across
@@ -307,6 +335,9 @@ namespace Nodus
                 continue;
               const double area = twice_area * rule.weight(q);
               points.push_back({xi, eta, area / slave_facet.area(xi, eta), {m, master_xi, master_eta}});
+              trace.places.push_back({static_cast<unsigned int>(trace.polygons.size() - 1),
+                                      static_cast<unsigned char>(t),
+                                      static_cast<unsigned char>(q)});
               covered += area;
             }
           }

@@ -13,12 +13,6 @@ namespace Nodus
     constexpr double smooth_cosine = 0.70710678;
     /// Least length of an averaged normal in the plane of symmetry of its node, before it is made a unit vector.
     constexpr double in_plane = 0.5;
-
-    /// [v] with [v] w = v x w.
-    dealii::Tensor<2, dim> cross_matrix(const Vector3 &v)
-    {
-      return dealii::Tensor<2, dim>({{0., -v[2], v[1]}, {v[2], 0., -v[0]}, {-v[1], v[0], 0.}});
-    }
   } // namespace
 
   SurfaceGeometry::SurfaceGeometry(const std::vector<SurfaceFace>           &faces,
@@ -42,6 +36,11 @@ namespace Nodus
     for (const SurfaceFace &face : faces)
       for (const unsigned int n : face.nodes)
         points_.push_back(positions[n]);
+  }
+
+  dealii::Tensor<2, dim> cross_matrix(const Vector3 &v)
+  {
+    return dealii::Tensor<2, dim>({{0., -v[2], v[1]}, {v[2], 0., -v[0]}, {-v[1], v[0], 0.}});
   }
 
   dealii::Tensor<2, dim> unit_derivative(const Vector3 &v)

@@ -17,6 +17,8 @@ namespace Nodus
   };
   /// Adds to the derivative with respect to @p node.
   void add(std::vector<NodeDerivative> &derivative, unsigned int node, const dealii::Tensor<2, dim> &value);
+  /// [v] with [v] w = v x w.
+  dealii::Tensor<2, dim> cross_matrix(const Vector3 &v);
   /// Derivative of v/|v|.
   dealii::Tensor<2, dim> unit_derivative(const Vector3 &v);
 
@@ -98,7 +100,12 @@ namespace Nodus
     }
     /// The offset is the sum over the middles of the four edges and the four corners, which move only where they hang,
     /// of a function of (xi, eta) times the offset there, and its derivative with respect to the nodes likewise.
-    static std::array<double, 8> offset_functions(double xi, double eta);
+    static std::array<double, 8> offset_functions(double xi, double eta)
+    {
+      return offset_functions(FaceShape(2, xi, eta).value);
+    }
+    /// The same from values, or derivatives, of the nine shape functions of degree 2.
+    static std::array<double, 8> offset_functions(const std::array<double, 9> &shape);
     std::vector<NodeDerivative>  offset_derivative(unsigned int f, unsigned int part) const;
 
     /// Add to @p derivative that of the normals with respect to the nodes, at fixed local coordinates. That of the face

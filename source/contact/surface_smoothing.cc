@@ -104,14 +104,13 @@ namespace Nodus
     }
   }
 
-  std::array<double, 8> SurfaceGeometry::offset_functions(const double xi, const double eta)
+  std::array<double, 8> SurfaceGeometry::offset_functions(const std::array<double, 9> &shape)
   {
-    const FaceShape       shape(2, xi, eta); // the centre takes half of each middle, less a quarter of each corner
-    std::array<double, 8> value;
+    std::array<double, 8> value; // the centre takes half of each middle, less a quarter of each corner
     for (unsigned int n = 0; n < 4; ++n)
     {
-      value[n]     = shape.value[edges[n][2]] + 0.5 * shape.value[4];
-      value[4 + n] = shape.value[corners[n]] - 0.25 * shape.value[4];
+      value[n]     = shape[edges[n][2]] + 0.5 * shape[4];
+      value[4 + n] = shape[corners[n]] - 0.25 * shape[4];
     }
     return value;
   }

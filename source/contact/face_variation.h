@@ -1,0 +1,164 @@
+#ifndef nodus_contact_face_variation_h
+#define nodus_contact_face_variation_h
+
+#include "contact/averaged_jump.h"
+#include "contact/variation_sources.h"
+
+#include <Eigen/Dense>
+
+#include <array>
+#include <vector>
+
+namespace Nodus
+{
+  /// What a slave face adds to the rows of its slave nodes (AveragedJump, before the division by their areas), and how
+  /// that follows the nodes: integration points move with the overlaps, or slide on the master; their areas, the dual
+  /// functions and the covered part change. Exact for the discrete integrals, but for
+  /// - points that smoothing shifts along the surfaces as these bend, which would couple every force with two rings of
+  ///   nodes on both sides (the offsets themselves are in, by parts());
+  /// - the covered part of faces that stick out of the master and are integrated by a fixed rule, which jumps with its
+  ///   points;
+  /// - normals that are averaged over the face (AveragedJump::Row::normal).
+  class FaceVariation
+  {
+  public:
+    using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+    /// @p measure: positions that areas are of; @p current: these are those of the geometry.
+    FaceVariation(const ContactPairParameters &pair,
+                  const ContactGeometry       &geometry,
+                  const VariationSources      &sources,
+                  const AveragedJump::Face    &face,
+                  const std::vector<Point>    &measure,
+                  bool                         current);
+
+    /// Nodes with a weight, and that derivatives are with respect to: of the face, then those of the master or of what
+    /// carries it.
+    const std::vector<unsigned int> &nodes() const
+    {
+      return nodes_;
+    }
+    /// Derivatives of a column of the row of slave node @p a of the face, three components for each node: the weight of
+    /// a node, or one of those below.
+    const double *row(const unsigned int a, const unsigned int column) const
+    {
+      return result_.data() + (a * n_columns_ + column) * result_.cols();
+    }
+    /// These are zero.
+    bool is_void(const unsigned int a, const unsigned int column) const
+    {
+      return plain_ && column < first_ && column != a && column != area();
+    }
+    unsigned int weight(const unsigned int node) const
+    {
+      return node < n_ ? node : node + 7;
+    }
+    unsigned int area() const
+    {
+      return n_;
+    }
+    /// Motion of a prescribed rigid master, and the jump of the positions beside that of the nodes (three each).
+    unsigned int moved() const
+    {
+      return n_ + 1;
+    }
+    unsigned int offset() const
+    {
+      return n_ + 4;
+    }
+
+    /// Sources that are no nodes: the offset in the row of slave node @p a follows part @p i with this weight.
+    const std::vector<unsigned int> &parts() const
+    {
+      return parts_;
+    }
+    double part_weight(const unsigned int a, const unsigned int i) const
+    {
+      return part_weight_(a, i);
+    }
+
+  private:
+    static constexpr int max_local     = 3 * 18;
+    static constexpr int n_coordinates = 5; ///< log of the weight, xi, eta, both of the master
+    using Row                          = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, max_local>;
+    using Row2                         = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor, 2, max_local>;
+    using Gradient    = Eigen::Matrix<double, n_coordinates, Eigen::Dynamic, Eigen::RowMajor, n_coordinates, max_local>;
+    using AnyGradient = Eigen::Matrix<double, n_coordinates, Eigen::Dynamic, Eigen::RowMajor>;
+    template <int columns>
+    using FixedGradient = Eigen::Matrix<double, n_coordinates, columns, Eigen::RowMajor>;
+    using Nodal         = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 9, 1>;
+
+    /// Nodes that move points with the same master face, slave nodes first: their places in nodes_.
+    struct Local
+    {
+      unsigned int              n_slave, n_master;
+      std::vector<unsigned int> place;
+      unsigned int              first_part; ///< of the master face, in parts_
+      unsigned int              size() const
+      {
+        return place.size();
+      }
+    };
+    /// A column of the rows at a point, and its derivatives with respect to the local coordinates.
+    struct Field
+    {
+      unsigned int column;
+      double       value, d[4];
+    };
+    /// For faces that have this many components of nodes together.
+    template <int columns>
+    struct SegmentFrame;
+
+    void number_nodes();
+    void number_local(unsigned int master_face);
+    void add_all_points();
+    template <int columns>
+    void add_segments();
+    void add_fixed_points();
+    void add_point(const MortarPoint &point, const Eigen::Ref<const AnyGradient> &gradient);
+    void make_fields(const MortarPoint &point, const FaceShape &shape);
+    void make_meshed_fields(const MortarPoint &point, Vector3 &offset, Vector3 *d_offset);
+    void make_rigid_fields(const MortarPoint &point, Vector3 &offset, Vector3 *d_offset);
+    void add_vector_field(unsigned int column, const Vector3 &value, const Vector3 *d);
+    void add_parts(const MortarPoint &point, const Nodal &test, double weight, Matrix &sum) const;
+    void add_products(const Nodal &test, const Nodal *d_test, double weight, Matrix &value, unsigned int row);
+    void flush();
+    template <int columns>
+    FixedGradient<columns> segment_gradient(const SegmentTrace::Polygon &polygon,
+                                            const SegmentTrace::Place   &place,
+                                            const MortarPoint           &point,
+                                            const SegmentFrame<columns> &frame);
+    Gradient               fixed_gradient(const MortarPoint &point) const;
+    template <typename Element, typename Motion>
+    Element element_gradient(const FaceShape &shape, double xi, double eta, const Motion &motion) const;
+    Row     fixed_element_gradient(const FaceShape &shape, double xi, double eta) const;
+    void    take_exact_areas();
+    void    finish();
+    void    finish_partly(const Matrix &C, const Matrix &parts);
+    Nodal   of_slaves(const std::array<double, 9> &nodal) const;
+
+    const ContactPairParameters &pair_;
+    const ContactGeometry       &geometry_;
+    const VariationSources      &all_sources_;
+    const AveragedJump::Face    &face_;
+    const std::vector<Point>    &measure_;
+    const bool                   current_;
+    const SurfaceGeometry       &slave_, &master_;
+    const RigidSurface *const    rigid_;
+    const double                 part_;
+    const bool                   plain_; ///< dual functions alone, no hanging node: the slave part is the node itself
+    const unsigned int           n_;     ///< nodes of the face
+    std::vector<unsigned int>    nodes_, parts_, master_faces_;
+    unsigned int                 n_columns_ = 0, first_ = 0; ///< first_ that the points contribute to
+    Local                        local_;
+    std::vector<Field>           fields_;
+    Matrix       coefficients_, gradients_, product_; ///< of the products at the points since the last flush
+    unsigned int n_points_ = 0;
+    Matrix       mass_, phi_, hat_; ///< integrals of phi phi^T, and of columns times phi and hats
+    Matrix       d_mass_, d_phi_, d_hat_, d_coverage_, d_exact_;
+    Nodal        exact_;
+    Matrix       phi_parts_, hat_parts_, part_weight_, result_;
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,109 @@
+#ifndef nodus_contact_site_variation_h
+#define nodus_contact_site_variation_h
+
+#include "contact/face_variation.h"
+#include "contact/jump_operator.h"
+
+#include <Eigen/Dense>
+
+#include <array>
+#include <vector>
+
+namespace Nodus
+{
+  /// How the row of G of a contact site, its area, the jump of positions beside that of the nodes and its normal follow
+  /// the sources of a variation: dense, in the nodes of the row and the sources that it depends on.
+  ///
+  /// To be used in this order: clear(), node() and column() for all that will be met, allocate(), then values.
+  class SiteVariation
+  {
+  public:
+    using Matrix  = FaceVariation::Matrix;
+    using Matrix3 = dealii::Tensor<2, dim>;
+
+    SiteVariation(unsigned int n_surface_nodes, unsigned int n_sources);
+
+    void         clear();
+    unsigned int node(unsigned int surface_node);
+    unsigned int column(unsigned int source);
+    /// Once they are known.
+    unsigned int place_of_node(const unsigned int surface_node) const
+    {
+      return place_of_node_[surface_node];
+    }
+    unsigned int place_of_source(const unsigned int source) const
+    {
+      return place_of_source_[source];
+    }
+    void number(const ContactSurfaces &surfaces, const FaceVariation &face);
+    void allocate();
+
+    const std::vector<unsigned int> &nodes() const
+    {
+      return nodes_;
+    }
+    const std::vector<unsigned int> &columns() const
+    {
+      return columns_;
+    }
+
+    /// Rows: the weights of the nodes, area, then three each of offset, motion of a rigid master, normal.
+    Eigen::Index area() const
+    {
+      return nodes_.size();
+    }
+    Eigen::Index offset() const
+    {
+      return nodes_.size() + 1;
+    }
+    Eigen::Index moved() const
+    {
+      return nodes_.size() + 4;
+    }
+    Eigen::Index normal() const
+    {
+      return nodes_.size() + 7;
+    }
+    const Matrix &rows() const
+    {
+      return rows_;
+    }
+    void add(const Eigen::Index row, const unsigned int column, const Vector3 &value)
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+        rows_(row, 3 * column + c) += value[c];
+    }
+    void add(const Eigen::Index row, const unsigned int column, const Matrix3 &value)
+    {
+      for (unsigned int i = 0; i < dim; ++i)
+        add(row + i, column, value[i]);
+    }
+
+    /// Adds the integrals in the row of slave node @p a of a face, ...
+    void add_face(const ContactSurfaces &surfaces, const FaceVariation &face, unsigned int a);
+    /// ... which become means: the variation of @p row from the variation of what it was before the division.
+    void take_means(const AveragedJump::Row &row);
+    /// Weights of the nodes before the change that balances moments.
+    const std::vector<double> &weights() const
+    {
+      return weight_;
+    }
+
+    /// Replaces the variation of the weights by that after the change that balances moments (JumpOperator). @p turn:
+    /// derivatives of the tangents with respect to the normal.
+    void balance(const SitePairing            &site,
+                 const std::array<Matrix3, 2> &turn,
+                 const AveragedJump::Row      &row,
+                 const std::vector<Point>     &x);
+
+  private:
+    struct Moments;
+    struct Slope;
+
+    std::vector<unsigned int> nodes_, columns_, place_of_node_, place_of_source_;
+    Matrix                    rows_, slopes_; ///< slopes_: scratch
+    std::vector<double>       weight_;
+  };
+} // namespace Nodus
+
+#endif
