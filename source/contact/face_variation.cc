@@ -8,15 +8,12 @@
 
 namespace Nodus
 {
-  FaceVariation::FaceVariation(const ContactPairParameters &pair,
-                               const ContactGeometry       &geometry,
-                               const VariationSources      &sources,
-                               const AveragedJump::Face    &face,
-                               const std::vector<Point>    &measure,
-                               const bool                   current)
-      : pair_(pair)
-      , geometry_(geometry)
-      , all_sources_(sources)
+  FaceVariation::FaceVariation(const ContactGeometry    &geometry,
+                               const VariationSources   &sources,
+                               const AveragedJump::Face &face,
+                               const std::vector<Point> &measure,
+                               const bool                current)
+      : all_sources_(sources)
       , face_(face)
       , measure_(measure)
       , current_(current)
@@ -31,16 +28,16 @@ namespace Nodus
     const unsigned int m = slave_.face(face.face).slaves.size(), size = 3 * nodes_.size();
     n_columns_ = nodes_.size() + 7;
     first_     = plain_ ? (rigid_ != nullptr ? moved() : offset()) : 0;
-    for (Matrix *const parts : {&phi_parts_, &hat_parts_, &part_weight_})
+    for (Matrix *const parts : {&phi_.parts, &hat_.parts, &part_weight_})
       parts->setZero(m, parts_.size());
-    mass_.setZero(m, m);
-    d_mass_.setZero(m * m, size);
-    phi_.setZero(m, n_columns_);
-    d_phi_.setZero(m * n_columns_, size);
+    mass_.value.setZero(m, m);
+    mass_.derivative.setZero(m * m, size);
+    phi_.value.setZero(m, n_columns_);
+    phi_.derivative.setZero(m * n_columns_, size);
     if (part_ < 1.)
     {
-      hat_.setZero(m, n_columns_);
-      d_hat_.setZero(m * n_columns_, size);
+      hat_.value.setZero(m, n_columns_);
+      hat_.derivative.setZero(m * n_columns_, size);
     }
     d_coverage_.setZero(1, size);
     take_exact_areas();
@@ -110,7 +107,7 @@ namespace Nodus
     }
     local_.n_slave  = n_;
     local_.n_master = local_.place.size() - n_;
-    n_points_       = 0;
+    batch_.n_points = 0;
   }
 
   void FaceVariation::add_vector_field(const unsigned int column, const Vector3 &value, const Vector3 *const d)
@@ -194,29 +191,30 @@ namespace Nodus
     const Nodal        d_phi[2] = {of_slaves(shape.d_xi), of_slaves(shape.d_eta)};
     const unsigned int m = phi.size(), n_mass = m * (m + 1) / 2,
                        n_rows = n_mass + (part_ < 1. ? 2 : 1) * m * fields_.size();
-    if (n_points_ == 0)
-      coefficients_.resize(n_rows, 0);
+    if (batch_.n_points == 0)
+      batch_.coefficients.resize(n_rows, 0);
     // matrices keep their memory
-    if (gradients_.cols() != 3 * local_.size() || gradients_.rows() < n_coordinates * (n_points_ + 1))
-      gradients_.conservativeResize(std::max<Eigen::Index>(2 * gradients_.rows(), 64 * n_coordinates),
-                                    3 * local_.size());
-    if (coefficients_.cols() < n_coordinates * (n_points_ + 1))
-      coefficients_.conservativeResize(n_rows, std::max<Eigen::Index>(2 * coefficients_.cols(), 64 * n_coordinates));
-    gradients_.middleRows<n_coordinates>(n_coordinates * n_points_) = gradient;
+    if (batch_.gradients.cols() != 3 * local_.size() || batch_.gradients.rows() < n_coordinates * (batch_.n_points + 1))
+      batch_.gradients.conservativeResize(std::max<Eigen::Index>(2 * batch_.gradients.rows(), 64 * n_coordinates),
+                                          3 * local_.size());
+    if (batch_.coefficients.cols() < n_coordinates * (batch_.n_points + 1))
+      batch_.coefficients.conservativeResize(
+          n_rows, std::max<Eigen::Index>(2 * batch_.coefficients.cols(), 64 * n_coordinates));
+    batch_.gradients.middleRows<n_coordinates>(n_coordinates * batch_.n_points) = gradient;
 
     for (unsigned int a = 0, row = 0; a < m; ++a)
       for (unsigned int c = 0; c <= a; ++c)
       {
-        auto         coefficient = coefficients_.block<1, n_coordinates>(row++, n_coordinates * n_points_);
+        auto         coefficient = batch_.coefficients.block<1, n_coordinates>(row++, n_coordinates * batch_.n_points);
         const double product     = weight * phi[a] * phi[c];
-        mass_(a, c) += product;
+        mass_.value(a, c) += product;
         if (c < a)
-          mass_(c, a) += product;
+          mass_.value(c, a) += product;
         coefficient << product, weight * (d_phi[0][a] * phi[c] + phi[a] * d_phi[0][c]),
             weight * (d_phi[1][a] * phi[c] + phi[a] * d_phi[1][c]), 0., 0.;
       }
-    add_products(phi, d_phi, weight, phi_, n_mass);
-    add_parts(point, phi, weight, phi_parts_);
+    add_products(phi, d_phi, weight, phi_.value, n_mass);
+    add_parts(point, phi, weight, phi_.parts);
     if (part_ < 1.)
     {
       const unsigned int degree = slave_.degree();
@@ -229,10 +227,10 @@ namespace Nodus
                (2. * step);
       };
       const Nodal d_hat[2] = {slope(step, 0.), slope(0., step)};
-      add_products(hat, d_hat, weight, hat_, n_mass + m * fields_.size());
-      add_parts(point, hat, weight, hat_parts_);
+      add_products(hat, d_hat, weight, hat_.value, n_mass + m * fields_.size());
+      add_parts(point, hat, weight, hat_.parts);
     }
-    ++n_points_;
+    ++batch_.n_points;
   }
 
   void FaceVariation::add_products(
@@ -243,7 +241,7 @@ namespace Nodus
       {
         const double t = weight * test[a];
         value(a, f.column) += t * f.value;
-        coefficients_.block<1, n_coordinates>(row++, n_coordinates * n_points_) << t * f.value,
+        batch_.coefficients.block<1, n_coordinates>(row++, n_coordinates * batch_.n_points) << t * f.value,
             t * f.d[0] + weight * d_test[0][a] * f.value, t * f.d[1] + weight * d_test[1][a] * f.value, t * f.d[2],
             t * f.d[3];
       }
@@ -273,37 +271,37 @@ namespace Nodus
 
   void FaceVariation::flush()
   {
-    if (n_points_ == 0)
+    if (batch_.n_points == 0)
       return;
-    const unsigned int n = n_coordinates * n_points_, m = mass_.rows();
-    product_.noalias() = coefficients_.leftCols(n) * gradients_.topRows(n);
-    const auto scatter = [&](const unsigned int from, Matrix &to, const unsigned int row)
+    const unsigned int n = n_coordinates * batch_.n_points, m = mass_.value.rows();
+    batch_.product.noalias() = batch_.coefficients.leftCols(n) * batch_.gradients.topRows(n);
+    const auto scatter       = [&](const unsigned int from, Matrix &to, const unsigned int row)
     {
       for (unsigned int l = 0; l < local_.size(); ++l)
-        to.block<1, dim>(row, dim * local_.place[l]) += product_.block<1, dim>(from, dim * l);
+        to.block<1, dim>(row, dim * local_.place[l]) += batch_.product.block<1, dim>(from, dim * l);
     };
     unsigned int from = 0;
     for (unsigned int a = 0; a < m; ++a)
       for (unsigned int c = 0; c <= a; ++c, ++from)
       {
-        scatter(from, d_mass_, a * m + c);
+        scatter(from, mass_.derivative, a * m + c);
         if (c < a)
-          scatter(from, d_mass_, c * m + a);
+          scatter(from, mass_.derivative, c * m + a);
       }
-    for (Matrix *const to : {&d_phi_, &d_hat_})
-      if (to == &d_phi_ || part_ < 1.)
+    for (Matrix *const to : {&phi_.derivative, &hat_.derivative})
+      if (to == &phi_.derivative || part_ < 1.)
         for (unsigned int a = 0; a < m; ++a)
           for (const Field &f : fields_)
             scatter(from++, *to, a * n_columns_ + f.column);
-    n_points_ = 0;
+    batch_.n_points = 0;
   }
 
   void FaceVariation::take_exact_areas()
   {
     static const dealii::QGauss<2> gauss(4);
-    const unsigned int             m = mass_.rows();
-    exact_.setZero(m);
-    d_exact_.setZero(m, 3 * nodes_.size());
+    const unsigned int             m = mass_.value.rows();
+    exact_.value.setZero(m, 1);
+    exact_.derivative.setZero(m, 3 * nodes_.size());
     number_local(master_faces_.empty() ? 0 : master_faces_[0]);
     for (unsigned int q = 0; q < gauss.size(); ++q)
     {
@@ -311,10 +309,10 @@ namespace Nodus
       const FaceShape shape(slave_.degree(), xi, eta);
       const Nodal area = gauss.weight(q) * FaceGeometry(slave_.face(face_.face), shape, measure_).area_vector().norm() *
                          of_slaves(shape.value);
-      exact_ += area;
+      exact_.value += area;
       const Row row = fixed_element_gradient(shape, xi, eta);
       for (unsigned int a = 0; a < m && current_; ++a)
-        d_exact_.row(a).head(3 * local_.n_slave) += area[a] * row.head(3 * local_.n_slave);
+        exact_.derivative.row(a).head(3 * local_.n_slave) += area[a] * row.head(3 * local_.n_slave);
     }
   }
 
@@ -322,28 +320,28 @@ namespace Nodus
   /// scale (part area C + (1 - part) H), the scale such that dual functions have their exact areas.
   void FaceVariation::finish()
   {
-    const unsigned int m = mass_.rows(), n = n_columns_ - first_;
+    const unsigned int m = mass_.value.rows(), n = n_columns_ - first_;
     result_.setZero(m * n_columns_, 3 * nodes_.size());
     if (face_.points.empty())
       return;
     if (part_ == 0.)
     {
-      result_      = d_hat_;
-      part_weight_ = hat_parts_;
+      result_      = hat_.derivative;
+      part_weight_ = hat_.parts;
       return;
     }
-    const Eigen::LDLT<Eigen::MatrixXd> solver(mass_);
-    const Matrix                       C = solver.solve(phi_), parts = solver.solve(phi_parts_),
+    const Eigen::LDLT<Eigen::MatrixXd> solver(mass_.value);
+    const Matrix                       C = solver.solve(phi_.value), parts = solver.solve(phi_.parts),
                  inverse = solver.solve(Eigen::MatrixXd::Identity(m, m));
     const auto rows      = [&](Matrix &matrix, const unsigned int a)
     { return matrix.middleRows(a * n_columns_ + first_, n); };
     // dC = M^-1 (dU - dM C)
     for (unsigned int a = 0; a < m; ++a)
       for (unsigned int c = 0; c < m; ++c)
-        rows(d_phi_, a).noalias() -= C.row(c).tail(n).transpose() * d_mass_.row(a * m + c);
+        rows(phi_.derivative, a).noalias() -= C.row(c).tail(n).transpose() * mass_.derivative.row(a * m + c);
     for (unsigned int a = 0; a < m; ++a)
       for (unsigned int c = 0; c < m; ++c)
-        rows(result_, a) += inverse(a, c) * rows(d_phi_, c);
+        rows(result_, a) += inverse(a, c) * rows(phi_.derivative, c);
     if (part_ < 1.)
     {
       finish_partly(C, parts);
@@ -351,36 +349,36 @@ namespace Nodus
     }
     for (unsigned int a = 0; a < m; ++a)
     {
-      rows(result_, a) *= exact_[a];
-      rows(result_, a).noalias() += C.row(a).tail(n).transpose() * d_exact_.row(a);
-      part_weight_.row(a) = exact_[a] * parts.row(a);
+      rows(result_, a) *= exact_.value(a, 0);
+      rows(result_, a).noalias() += C.row(a).tail(n).transpose() * exact_.derivative.row(a);
+      part_weight_.row(a) = exact_.value(a, 0) * parts.row(a);
       if (plain_)
-        result_.row(a * n_columns_ + a) = d_exact_.row(a);
-      result_.row(a * n_columns_ + area()) = d_exact_.row(a);
+        result_.row(a * n_columns_ + a) = exact_.derivative.row(a);
+      result_.row(a * n_columns_ + area()) = exact_.derivative.row(a);
     }
   }
 
   void FaceVariation::finish_partly(const Matrix &C, const Matrix &parts)
   {
-    const unsigned int m = mass_.rows();
+    const unsigned int m = mass_.value.rows();
     for (unsigned int a = 0; a < m; ++a)
     {
       // what finish() took off is put back, as C is 1 there
-      const double total   = phi_(a, area());
-      Matrix       d_total = d_phi_.row(a * n_columns_ + area());
+      const double total   = phi_.value(a, area());
+      Matrix       d_total = phi_.derivative.row(a * n_columns_ + area());
       for (unsigned int c = 0; c < m; ++c)
-        d_total += C(c, area()) * d_mass_.row(a * m + c);
-      const Eigen::RowVectorXd sum  = part_ * total * C.row(a) + (1. - part_) * hat_.row(a);
-      const Eigen::RowVectorXd side = total * C.row(a) - hat_.row(a);
+        d_total += C(c, area()) * mass_.derivative.row(a * m + c);
+      const Eigen::RowVectorXd sum  = part_ * total * C.row(a) + (1. - part_) * hat_.value.row(a);
+      const Eigen::RowVectorXd side = total * C.row(a) - hat_.value.row(a);
       const Matrix             derivative =
           part_ * (total * result_.middleRows(a * n_columns_, n_columns_) + C.row(a).transpose() * d_total) +
-          (1. - part_) * d_hat_.middleRows(a * n_columns_, n_columns_) +
+          (1. - part_) * hat_.derivative.middleRows(a * n_columns_, n_columns_) +
           face_.dual_slope() * side.transpose() * d_coverage_;
-      const double S = sum[area()], scale = 1. + part_ * (exact_[a] / S - 1.);
-      const Matrix d_scale = face_.dual_slope() * (exact_[a] / S - 1.) * d_coverage_ +
-                             part_ / S * (d_exact_.row(a) - exact_[a] / S * derivative.row(area()));
+      const double S = sum[area()], scale = 1. + part_ * (exact_.value(a, 0) / S - 1.);
+      const Matrix d_scale = face_.dual_slope() * (exact_.value(a, 0) / S - 1.) * d_coverage_ +
+                             part_ / S * (exact_.derivative.row(a) - exact_.value(a, 0) / S * derivative.row(area()));
       result_.middleRows(a * n_columns_, n_columns_) = scale * derivative + sum.transpose() * d_scale;
-      part_weight_.row(a) = scale * (part_ * total * parts.row(a) + (1. - part_) * hat_parts_.row(a));
+      part_weight_.row(a) = scale * (part_ * total * parts.row(a) + (1. - part_) * hat_.parts.row(a));
     }
   }
 } // namespace Nodus

@@ -25,12 +25,11 @@ namespace Nodus
     using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
     /// @p measure: positions that areas are of; @p current: these are those of the geometry.
-    FaceVariation(const ContactPairParameters &pair,
-                  const ContactGeometry       &geometry,
-                  const VariationSources      &sources,
-                  const AveragedJump::Face    &face,
-                  const std::vector<Point>    &measure,
-                  bool                         current);
+    FaceVariation(const ContactGeometry    &geometry,
+                  const VariationSources   &sources,
+                  const AveragedJump::Face &face,
+                  const std::vector<Point> &measure,
+                  bool                      current);
 
     /// Nodes with a weight, and that derivatives are with respect to: of the face, then those of the master or of what
     /// carries it.
@@ -105,6 +104,18 @@ namespace Nodus
       unsigned int column;
       double       value, d[4];
     };
+    /// Products at the points since the last flush: what multiplies the motions of the points, and these.
+    struct Batch
+    {
+      Matrix       coefficients, gradients, product;
+      unsigned int n_points = 0;
+    };
+    /// Integrals over the face by slave node and column, their derivatives by slave node times column and node, and
+    /// integrals of the functions of the parts.
+    struct Integrals
+    {
+      Matrix value, derivative, parts;
+    };
     /// For faces that have this many components of nodes together.
     template <int columns>
     struct SegmentFrame;
@@ -137,27 +148,22 @@ namespace Nodus
     void    finish_partly(const Matrix &C, const Matrix &parts);
     Nodal   of_slaves(const std::array<double, 9> &nodal) const;
 
-    const ContactPairParameters &pair_;
-    const ContactGeometry       &geometry_;
-    const VariationSources      &all_sources_;
-    const AveragedJump::Face    &face_;
-    const std::vector<Point>    &measure_;
-    const bool                   current_;
-    const SurfaceGeometry       &slave_, &master_;
-    const RigidSurface *const    rigid_;
-    const double                 part_;
-    const bool                   plain_; ///< dual functions alone, no hanging node: the slave part is the node itself
-    const unsigned int           n_;     ///< nodes of the face
-    std::vector<unsigned int>    nodes_, parts_, master_faces_;
-    unsigned int                 n_columns_ = 0, first_ = 0; ///< first_ that the points contribute to
-    Local                        local_;
-    std::vector<Field>           fields_;
-    Matrix       coefficients_, gradients_, product_; ///< of the products at the points since the last flush
-    unsigned int n_points_ = 0;
-    Matrix       mass_, phi_, hat_; ///< integrals of phi phi^T, and of columns times phi and hats
-    Matrix       d_mass_, d_phi_, d_hat_, d_coverage_, d_exact_;
-    Nodal        exact_;
-    Matrix       phi_parts_, hat_parts_, part_weight_, result_;
+    const VariationSources   &all_sources_;
+    const AveragedJump::Face &face_;
+    const std::vector<Point> &measure_;
+    const bool                current_;
+    const SurfaceGeometry    &slave_, &master_;
+    const RigidSurface *const rigid_;
+    const double              part_;
+    const bool                plain_; ///< dual functions alone, no hanging node: the slave part is the node itself
+    const unsigned int        n_;     ///< nodes of the face
+    std::vector<unsigned int> nodes_, parts_, master_faces_;
+    unsigned int              n_columns_ = 0, first_ = 0; ///< first_ that the points contribute to
+    Local                     local_;
+    std::vector<Field>        fields_;
+    Batch                     batch_;
+    Integrals                 mass_, phi_, hat_, exact_; ///< of phi phi^T, of columns times phi and hats, of phi
+    Matrix                    d_coverage_, part_weight_, result_;
   };
 } // namespace Nodus
 

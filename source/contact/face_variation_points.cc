@@ -279,7 +279,7 @@ namespace Nodus
     unsigned int at = static_cast<unsigned int>(-1);
     for (const MortarPoint &point : face_.points)
     {
-      if (n_points_ == 0 || point.master.face != at)
+      if (batch_.n_points == 0 || point.master.face != at)
       {
         flush();
         at = point.master.face;

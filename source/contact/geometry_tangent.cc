@@ -90,8 +90,7 @@ namespace Nodus
           const unsigned int p       = around.face->pair;
           const auto        &pair    = tangent_.pairs_[p];
           const bool         current = pair.surface_measure == ContactPairParameters::SurfaceMeasure::current;
-          around.variation           = std::make_unique<FaceVariation>(pair,
-                                                             tangent_.geometry_,
+          around.variation           = std::make_unique<FaceVariation>(tangent_.geometry_,
                                                              tangent_.sources_,
                                                              *around.face,
                                                              current ? tangent_.geometry_.slave[p].positions() : X_,

@@ -208,27 +208,25 @@ namespace Nodus
     Eigen::Vector2d value, to_scale, shift, to_size, slope;
   };
 
-  void SiteVariation::balance(const SitePairing            &site,
-                              const std::array<Matrix3, 2> &turn,
-                              const AveragedJump::Row      &row,
-                              const std::vector<Point>     &x)
+  namespace
   {
-    const Moments         moments(*this, site, row, x);
-    const double          size = std::sqrt(row.area);
-    const Eigen::Vector2d beside(moments.beside * site.tangent[0], moments.beside * site.tangent[1]);
-    const Slope           slope(moments.spread, moments.sum * row.area, size, beside);
-    const Eigen::Matrix3d d_t[2]  = {eigen(turn[0]), eigen(turn[1])};
-    const auto            normals = rows_.middleRows<3>(normal());
-
-    // variations of beside, mean and spread, sum, each in rows of slopes_
+    /// Rows of the variations of beside, mean, spread (00, 11, 01) and sum.
     enum : Eigen::Index
     {
       to_beside = 0,
       to_mean   = 2,
-      to_spread = 4, // 00, 11, 01
+      to_spread = 4,
       to_sum    = 7,
       n_rows    = 8
     };
+  } // namespace
+
+  void SiteVariation::vary_moments(const SitePairing        &site,
+                                   const Eigen::Matrix3d    *d_t,
+                                   const Moments            &moments,
+                                   const std::vector<Point> &x)
+  {
+    const auto normals = rows_.middleRows<3>(normal());
     slopes_.setZero(n_rows, rows_.cols());
     for (unsigned int i = 0; i < 2; ++i)
     {
@@ -263,6 +261,21 @@ namespace Nodus
     }
     for (unsigned int k = 0; k < 3; ++k)
       slopes_.row(to_spread + k) += turned[k] * normals;
+  }
+
+  void SiteVariation::balance(const SitePairing            &site,
+                              const std::array<Matrix3, 2> &turn,
+                              const AveragedJump::Row      &row,
+                              const std::vector<Point>     &x)
+  {
+    const Moments         moments(*this, site, row, x);
+    const double          size = std::sqrt(row.area);
+    const Eigen::Vector2d beside(moments.beside * site.tangent[0], moments.beside * site.tangent[1]);
+    const Slope           slope(moments.spread, moments.sum * row.area, size, beside);
+    const Eigen::Matrix3d d_t[2]  = {eigen(turn[0]), eigen(turn[1])};
+    const auto            normals = rows_.middleRows<3>(normal());
+
+    vary_moments(site, d_t, moments, x);
 
     // of the slope
     const Eigen::Matrix2d            H        = slope.axes * slope.value.asDiagonal() * slope.axes.transpose();

@@ -99,6 +99,11 @@ namespace Nodus
   private:
     struct Moments;
     struct Slope;
+    /// Fills slopes_ with the variations of the moments; @p d_t: of the tangents with respect to the normal.
+    void vary_moments(const SitePairing        &site,
+                      const Eigen::Matrix3d    *d_t,
+                      const Moments            &moments,
+                      const std::vector<Point> &x);
 
     std::vector<unsigned int> nodes_, columns_, place_of_node_, place_of_source_;
     Matrix                    rows_, slopes_; ///< slopes_: scratch
