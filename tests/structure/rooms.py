@@ -102,7 +102,7 @@ def main():
                     arrows[room, other] += 1
                     if other not in allowed.get(room, ()):
                         mistakes.append(f"{here}:{number}: {room} may not use {other}")
-            member = re.match(r"^ {0,2}(?:[\w:<>,&*\s\[\]]+\s)?[*&]?((?:\w+::)*\w+)::~?\w+\(", line)
+            member = re.match(r"^ {0,2}(?=\S)(?:[\w:<>,&*\s\[\]]+\s)?[*&]?((?:\w+::)*\w+)::~?\w+\(", line)
             if file.suffix == ".cc" and member and not re.match(r"(std|dealii|Nodus|MPI)\b", member.group(1)):
                 homes[member.group(1)].add(str(here))
         longest_file = max(longest_file, len(lines))
