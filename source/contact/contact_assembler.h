@@ -19,7 +19,7 @@ namespace Nodus
   struct ContactState
   {
     std::vector<Point>   x;          ///< current positions of the surface nodes
-    std::vector<Vector3> increment;  ///< their displacement since the start of the load step
+    std::vector<Vector3> increment;  ///< their displacement since the start of the increment
     std::vector<Vector3> prescribed; ///< what the next correction must add at prescribed components, zero elsewhere
     std::vector<Point>   centre;     ///< of the driven rigid bodies
     std::vector<double>  lambda;     ///< per slave node [pressure]

@@ -21,7 +21,7 @@ namespace Nodus
     std::vector<double>                pressure; ///< lambda_bar (weighted) or lambda (raw) [pressure]
     std::vector<double>                distance; ///< d_n > 0 penetration [length]
     std::vector<std::array<double, 2>> Lambda;   ///< friction semi-multiplier in the tangent frame
-    std::vector<std::array<double, 2>> slip;     ///< tangential jump of the step's displacement, scaled as
+    std::vector<std::array<double, 2>> slip;     ///< tangential jump of the increment, scaled as
                                                  ///< SitePairing::friction_scale says [length]
   };
 
