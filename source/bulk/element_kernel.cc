@@ -86,7 +86,7 @@ namespace Nodus
                 P[i][0] * gradient_[q][a][0] + P[i][1] * gradient_[q][a][1] + P[i][2] * gradient_[q][a][2];
       }
 
-      /// JxW dP/dF from the material and, with @p S times JxW, the geometric part.
+      /// JxW dP/dF from the material and, with @p S times JxW, the geometric part (eq. B2).
       static void set_moduli(const Lanes (&F)[dim][dim],
                              const Lanes (&S)[n_pairs],
                              const Lanes (&C)[n_pairs][n_pairs],

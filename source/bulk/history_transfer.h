@@ -10,8 +10,9 @@
 
 namespace Nodus
 {
-  /// Carries the committed states of the materials to a refined and coarsened mesh: they are polynomials through the
-  /// Gauss points of a cell, which are evaluated at those of its children, or of the cell that it becomes part of.
+  /// Carries the committed states of the materials to a refined and coarsened mesh (theory section 29): they are
+  /// polynomials through the Gauss points of a cell, which are evaluated at those of its children, or of the cell that
+  /// it becomes part of.
   class HistoryTransfer
   {
   public:

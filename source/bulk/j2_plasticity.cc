@@ -30,8 +30,8 @@ namespace Nodus
     }
     norm = std::sqrt(norm);
 
-    // von Mises stress of the trial; what is left of the deviator, and its derivative along itself, see Simo & Hughes,
-    // box 3.2
+    // von Mises stress of the trial; what is left of the deviator, and its derivative along itself (eq. B9), see Simo &
+    // Hughes, box 3.2
     const double trial = std::sqrt(6.) * mu_ * norm;
     double       left = 1., along = 1.;
     if (trial > hardening_.yield_stress(principal.plastic_strain) * (1. + 1e-12))

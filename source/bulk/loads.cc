@@ -190,9 +190,9 @@ namespace Nodus
     }
   }
 
-  /// Follower pressure: f_a = - int p N_a (t_0 x t_1) with the current tangents t. Of its derivative
-  /// - int p N_a [v_b] du_b, v_b = N_b,0 t_1 - N_b,1 t_0, the symmetric half is kept: exact for uniform pressure when
-  /// the edge of the loaded patch is held or the patch is closed, since the rest is an integral along that edge.
+  /// Follower pressure (eq. B3): f_a = - int p N_a (t_0 x t_1) with the current tangents t. Of its derivative
+  /// int p N_a v_b x du_b, v_b = N_b,0 t_1 - N_b,1 t_0, the symmetric half is kept: exact for uniform pressure when the
+  /// edge of the loaded patch is held or the patch is closed, since the rest is an integral along that edge.
   void Loads::Implementation::add_pressure(const LoadedFace &loaded, const Cell &cell) const
   {
     const FaceTable     &table = faces[loaded.face];

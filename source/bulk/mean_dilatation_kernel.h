@@ -7,7 +7,7 @@ namespace Nodus
 {
   /// Displacement, pressure p and dilatation theta with discontinuous p and theta, which are eliminated in the cell:
   /// constant for degree 1 (Q1P0: Simo, Taylor & Pister, Comput. Methods Appl. Mech. Eng. 51, 1985), linear in the unit
-  /// coordinates for degree 2. The law sees Fbar = (theta/J)^1/3 F; the functional
+  /// coordinates for degree 2. The law sees Fbar = (theta/J)^1/3 F; the functional (eqs. B10 and B11)
   ///   int W(Fbar) + p (J - theta) dV
   /// makes theta the L2 projection of J, and p that of dW/dtheta = tr(tau)/(3 theta), in each cell. What is left is a
   /// function of the displacement alone: the stiffness is its second derivative, symmetric for every law. In the course

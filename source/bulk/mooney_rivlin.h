@@ -7,7 +7,7 @@ namespace Nodus
 {
   /// Mooney-Rivlin in the isochoric invariants with the quadratic volumetric term,
   /// W = c10 (I1 J^-2/3 - 3) + c01 (I2 J^-4/3 - 3) + kappa/2 (J - 1)^2, so that the shear and the bulk response
-  /// are independent; 2 (c10 + c01) = mu and kappa = E / (3 (1 - 2 nu)) at F = I.
+  /// are independent; 2 (c10 + c01) = mu and kappa = E / (3 (1 - 2 nu)) at F = I (eqs. B6 and B7).
   class MooneyRivlin : public Material
   {
   public:

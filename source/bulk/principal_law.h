@@ -5,8 +5,9 @@
 
 namespace Nodus
 {
-  /// An isotropic law in principal logarithmic stretches: Kirchhoff stresses tau_a = dW/d(epsilon_a) that share their
-  /// axes n_a with the elastic left Cauchy-Green tensor b, whose eigenvalues are exp(2 epsilon_a). With N_a = F^-1 n_a
+  /// An isotropic law in principal logarithmic stretches (eq. B8): Kirchhoff stresses tau_a = dW/d(epsilon_a) that
+  /// share their axes n_a with the elastic left Cauchy-Green tensor b, whose eigenvalues are exp(2 epsilon_a). With N_a
+  /// = F^-1 n_a
   ///   S = sum_a tau_a N_a (x) N_a
   ///   C = sum_ab (dtau_a/depsilon_b - 2 tau_a delta_ab) N_aa (x) N_bb + sum_a<b g_ab M_ab (x) M_ab,
   ///   M_ab = N_a (x) N_b + N_b (x) N_a, g_ab = (tau_a - tau_b)/2 coth(epsilon_a - epsilon_b) - (tau_a + tau_b)/2

@@ -11,8 +11,8 @@
 namespace Nodus
 {
   /// Adds to @p indicator @p weight times the squared difference between the stress and the one recovered at the nodes,
-  /// int |sigma - sigma*|^2/E dV of each owned cell, and sets the squared norm int |sigma|^2/E dV of all
-  /// (Zienkiewicz & Zhu 1987). @p u has ghost entries. Collective.
+  /// int |sigma - sigma*|^2/E dV of each owned cell, and sets the squared norm int |sigma|^2/E dV of all (eq. A1;
+  /// Zienkiewicz & Zhu 1987). @p u has ghost entries. Collective.
   void add_stress_error(double                                        weight,
                         const dealii::DoFHandler<dim>                &dof_handler,
                         const SolidAssembler                         &solid,

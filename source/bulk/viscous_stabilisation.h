@@ -16,7 +16,7 @@
 namespace Nodus
 {
   /// Dashpots to ground at every node, for bodies that nothing holds before contact closes. A node with the volume V of
-  /// a body of stiffness E and size L resists its displacement since the start of the increment with
+  /// a body of stiffness E and size L resists its displacement since the start of the increment with (eq. B5)
   ///
   ///     f = -viscosity E V/L^2 s T/dt du,   T: duration of the interval, dt: of the increment,
   ///

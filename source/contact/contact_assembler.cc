@@ -22,7 +22,7 @@ namespace Nodus
           : derivative_(surfaces.n_sites())
           , number_(surfaces.slave_nodes().size(), none)
       {
-        // lambda_bar of slave nodes is (M S lambda)_j / m_j, lambda of integration points the interpolated one.
+        // eq. T1: lambda_bar of slave nodes is (M S lambda)_j / m_j, lambda of integration points the interpolated one.
         for (const ContactPoint &point : weights.points())
           for (unsigned int b = 0; b < point.slaves.size(); ++b)
             if (point.site != none)
@@ -214,7 +214,7 @@ namespace Nodus
     }
 
     const ContactResidual result = scatter.finish(system);
-    system.multiplier_scale.assign(3 * surfaces_.n_owned_slave_nodes(), 1.);
+    system.multiplier_scale.assign(3 * surfaces_.n_owned_slave_nodes(), 1.); // eq. Q3
     for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
       if (result.friction_weight[k] > 0.)
         for (unsigned int i = 1; i < 3; ++i)

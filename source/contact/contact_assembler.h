@@ -19,14 +19,14 @@ namespace Nodus
   struct ContactState
   {
     std::vector<Point>   x;          ///< current positions of the surface nodes
-    std::vector<Vector3> increment;  ///< their displacement since the start of the load step
+    std::vector<Vector3> increment;  ///< their displacement since the start of the increment
     std::vector<Vector3> prescribed; ///< what the next correction must add at prescribed components, zero elsewhere
     std::vector<Point>   centre;     ///< of the driven rigid bodies
     std::vector<double>  lambda;     ///< per slave node [pressure]
     std::vector<std::array<double, 2>> Lambda; ///< per slave node, in its tangent frame
   };
 
-  /// Contact and friction terms of the residual (eq. 10-15), owned sites and ghosts.
+  /// Contact and friction terms of the residual (eq. 49-59; weak form eq. 10-15), owned sites and ghosts.
   struct ContactResidual
   {
     std::vector<Vector3> jump;   ///< per site, work conjugate to its jump: minus the force on the slave [force]
@@ -39,9 +39,9 @@ namespace Nodus
   /// Residual and symmetric tangent of contact and friction for frozen pairing, statuses and threshold.
   ///
   /// Every product of two contact fields is a sum over the points of SurfaceWeights of filtered fields: contact S,
-  /// stick S S_f, slip S (1 - S_f), open 1 - S. Nodal statuses filter the nodal values of both factors (eq. 32-34); a
+  /// stick S S_f, slip S (1 - S_f), open 1 - S. Nodal statuses filter the nodal values of both factors (eq. 30-34); a
   /// point of the integration point scheme has one jump and one status, which filter the fields at the point (eq.
-  /// 10-21).
+  /// 16-21).
   class ContactAssembler
   {
   public:
@@ -53,20 +53,21 @@ namespace Nodus
 
     /// Fills the contact couplings, the multiplier scale, the border and the multiplier blocks of the right-hand side
     /// of @p system; subtracts the contact forces from its displacement block (free components only). Collective.
-    /// @p linearise_threshold: the thresholds follow the current pressure (SurfaceWeights, site_pressure); the tangent
-    /// gets the derivative of the friction tractions with respect to lambda and is not symmetric any more. That of the
+    /// @p linearise_threshold: the thresholds follow the current pressure (site_pressure, eq. T1-T4); the tangent gets
+    /// the derivative of the friction tractions with respect to lambda and is not symmetric any more. That of the
     /// factors which scale the friction law rows is left out where a row has one factor (one node a point), and
     /// sticking nodes have none there, because the caller keeps their mu lambda Lambda when the threshold moves.
     ContactResidual assemble(const ContactState &state, LinearSystem &system, bool linearise_threshold = false) const;
 
-    /// Adds the contact force residual G^T R_jump to all components, prescribed ones too. Collective (compresses).
+    /// Adds the contact force residual G^T R_jump (eq. N1) to all components, prescribed ones too. Collective
+    /// (compresses).
     void add_forces(const ContactResidual &residual, Vector &force) const;
 
-    /// Largest relative violation of the contact and friction laws: lengths over @p length, friction law absolute.
-    /// Collective.
+    /// Largest relative violation of the contact and friction laws (eq. N4): lengths over @p length, friction law
+    /// absolute. Collective.
     double norm(const ContactResidual &residual, double length) const;
 
-    /// d_n, without what is adjusted, and the tangential jump of the increment at an owned site; 0 where unpaired.
+    /// d_n, without what is adjusted, and the tangential jump of the increment (eq. K2), owned sites; 0 where unpaired.
     double                distance(const ContactState &state, unsigned int site) const;
     std::array<double, 2> slip(const ContactState &state, unsigned int site) const;
 

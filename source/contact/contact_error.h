@@ -14,9 +14,10 @@ namespace Nodus
   /// Adds to @p indicator what a contact solution says about the mesh on both sides of each pair.
   ///
   /// With h, A the size and the area of a slave face and E the softer Young's modulus @p stiffness of its pair, the
-  /// squared error of the face is @p weight times h A/E times the sum of
-  /// - the mean square over its nodes of the jump between the contact traction and the recovered stress below it,
-  /// - (E g/h)^2, g the gap in the middle of a face whose nodes are all closed, or the penetration there of any other,
+  /// squared error of the face is @p weight times h A/E times the sum of (eq. A2)
+  /// - the mean square over its nodes of the jump between the contact traction and the recovered stress below it, where
+  ///   some node is closed,
+  /// - (E g/h)^2, g the gap in the middle of a face whose nodes are all closed, the penetration there where some are,
   /// - the largest squared traction of a face whose nodes are not all open or all closed, a quarter of the square
   ///   of its friction where some stick and some slip: the ends of the contact and of the stick zone lie in it.
   /// The cell of the master face that faces its middle gets the same share. Collective.

@@ -177,7 +177,7 @@ namespace Nodus
 
   /// On a new mesh: sites that stick do so where the surfaces stuck, not where interpolated displacements that are not
   /// in equilibrium have put them: the jump of the displacement is taken over besides these. Where the difference would
-  /// change friction by more than its limit it is one of geometry (slip on curved surfaces), and left out.
+  /// change friction by more than its limit it is one of geometry (slip on curved surfaces), and left out (eq. X2).
   void ContactInterface::carry_over_sticking()
   {
     std::vector<Vector3> u = displacement();

@@ -50,8 +50,9 @@ namespace Nodus
     void begin(const BlockVector &unknowns);
     /// Takes positions and multipliers from @p unknowns; @p start: displacements as the increment began.
     void gather(const BlockVector &unknowns, const Vector &start);
-    /// Projects anew at the displacements of @p unknowns and carries its multipliers over: Lambda keeps its direction
-    /// in space and its length in the new tangent planes, lambda the nodal force; nodes without partner lose all.
+    /// Projects anew at the displacements of @p unknowns and carries its multipliers over (eq. X1): Lambda keeps its
+    /// direction in space and its length in the new tangent planes, lambda the nodal force; nodes without partner lose
+    /// all.
     void pair(BlockVector &unknowns, const Vector &start);
     /// The state that this refers to has been set to another one, to which @p unknowns belong.
     void resume(const BlockVector &unknowns, const Vector &start);
@@ -65,7 +66,7 @@ namespace Nodus
     /// @p duration of the increment [time]; 0: the rates stay.
     void freeze_threshold(double duration);
     /// The same within Newton's iteration: sticking nodes keep their friction traction mu lambda Lambda, which as
-    /// unknown of the iteration is linear.
+    /// unknown of the iteration is linear (theory section 12).
     void follow_pressure(double duration, BlockVector &unknowns, const Vector &start);
     void update_slip_rates(double duration);
     /// Contact pressure of every site (site_values.h).
@@ -88,7 +89,7 @@ namespace Nodus
     void add_geometry_tangent(LinearSystem &system) const;
     /// Nodal contact forces, at prescribed components too.
     void add_forces(Vector &force) const;
-    /// Largest relative violation of the contact and friction laws: lengths over @p length.
+    /// Largest relative violation of the contact and friction laws (eq. N4): lengths over @p length.
     double norm(double length) const;
 
     /// The increment has converged: slips, forces, jumps and areas become those that the next one begins with.

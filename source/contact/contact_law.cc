@@ -37,7 +37,7 @@ namespace Nodus
 
     Filtered filter(const LawStatus &status, const double phi, const bool in_the_mean)
     {
-      // in the mean the projection of the slip rows decides between stick and slip (eq. F3)
+      // regularised, the projection of the slip rows decides between stick and slip (eq. F3)
       const bool stick = status.stick && !in_the_mean;
       return {status.contact ? phi : 0.,
               status.contact ? 0. : phi,
@@ -55,7 +55,7 @@ namespace Nodus
     struct Jump : Filtered
     {
       Column3 normal;
-      Matrix3 projector; ///< on the free tangents, times the friction scale of each
+      Matrix3 projector; ///< P: on the free tangents, times the friction scale of each (eq. P4)
     };
 
     /// Filtered fields at the point (eq. W4), and all that rows and columns are made of.
@@ -71,7 +71,7 @@ namespace Nodus
       bool    slips          = false, held;
       double  W, Wt; ///< weight, and weight times threshold
       double  threshold, h_n, h_tau;
-      double  stiffness; ///< h_n in the mean, 0 otherwise
+      double  stiffness; ///< 0, or h_n where regularised (eq. F3)
       Column3 pi  = Column3::Zero();
       Matrix3 K_B = Matrix3::Zero();
     };
@@ -146,7 +146,7 @@ namespace Nodus
       f.held      = point.held;
       // the normal law of a point is projected, too: its pressure is lambda - h_n d_n where that is negative (eq. F3)
       f.stiffness = point.in_the_mean ? f.h_n : 0.;
-      if (f.slips && f.held) // Lambda stays as it is
+      if (f.slips && f.held) // Lambda stays as it is (theory section 14, held friction)
         f.pi = f.Lambda_slip;
       else if (f.slips)
         direction(f.Lambda_slip + f.h_tau * f.slip_slip, f.pi, f.K_B);
@@ -177,7 +177,7 @@ namespace Nodus
           if (f.slips)                                                                               // eq. 40, 44
             A.block<3, 2>(ia, jc + 1) -= Wt * i.slip * j.slip * i.projector * f.K_B * j.tangent.transpose();
         }
-        // The pressure in the mean, which belongs to points with one jump: second term of eq. 36, 37, 41.
+        // The regularised normal law, which belongs to points with one jump: second term of eq. 36, 37, 41.
         if (f.stiffness > 0. && i.contact != 0.)
           A.block<3, 3>(ia, ia) += W * f.stiffness * i.normal * i.normal.transpose();
         if (f.slips)

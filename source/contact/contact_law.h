@@ -58,12 +58,12 @@ namespace Nodus
     std::array<LawJump, max_nodes> jumps;
     double                         weight;                  ///< of the quadrature [area]
     double                         threshold;               ///< mu lambda_s <= 0, at the point [pressure]
-    double                         normal_augmentation;     ///< h_n > 0 [pressure/length]
-    double                         tangential_augmentation; ///< h_tau > 0 of this threshold [1/length]
+    double                         normal_augmentation;     ///< h_n > 0 (eq. Q1) [pressure/length]
+    double                         tangential_augmentation; ///< h_tau > 0 of this threshold (eq. Q2) [1/length]
     /// Regularised: the pressure of contact is lambda - h_n d_n, and friction takes the projection on the unit ball
     /// whether it sticks or slips (eq. F3).
     bool in_the_mean = false;
-    /// The friction multipliers stay as they are; slip keeps the direction that they have.
+    /// The friction multipliers stay as they are; slip keeps the direction that they have (theory section 14).
     bool held = false;
     /// Fill LawSum::by_threshold.
     bool linearise_threshold = false;

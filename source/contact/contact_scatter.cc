@@ -42,7 +42,7 @@ namespace Nodus
         law_residual_[4 * point.slaves[a] + 3] -= std::abs(law.nodes[a].shape) * Wt;
   }
 
-  /// Calls @p f with the flat index and the weight of everything that local unknown @p local consists of.
+  /// Calls @p f with the flat index and the weight of everything that local unknown @p local consists of (eq. 35).
   template <typename Function>
   void ContactScatter::for_each_unknown(const ContactPoint &point,
                                         const LawSum       &sum,
@@ -65,7 +65,7 @@ namespace Nodus
       surfaces_.for_each_rigid_unknown(shares_[s].body, l, shares_[s].weight, shares_[s].arm, f);
   }
 
-  /// Driven rigid bodies stand in the border, all else in @p inner.
+  /// Driven rigid bodies stand in the border (eq. R4), all else in @p inner.
   inline void ContactScatter::add_entry(
       TripletMatrix &inner, const DoFIndex row, const DoFIndex column, const double value, LinearSystem &system) const
   {
@@ -85,7 +85,7 @@ namespace Nodus
     }
     const Eigen::Map<const LocalMatrix> A(sum.matrix.data(), n, n);
     const Eigen::Map<const LocalVector> r(sum.residual.data(), n);
-    const LocalVector                   rhs = -(r + A * prescribed);
+    const LocalVector                   rhs = -(r + A * prescribed); // eq. N2
     for (unsigned int l = 0; l < 3; ++l)
     {
       for (unsigned int a = 0; a < n_jumps; ++a)

@@ -23,7 +23,7 @@ namespace Nodus
   public:
     ContactScatter(const ContactSurfaces &surfaces, const JumpOperator &jump, const ContactState &state);
 
-    /// Adds the weight |mu lambda_s phi| of a point to its slave nodes with friction.
+    /// Adds the weight |mu lambda_s phi| of a point to its slave nodes with friction (eq. Q3).
     void add_friction_weight(const ContactPoint &point, const LawPoint &law);
 
     /// Adds the @p sum of points with the unknowns of @p point: the tangent to the contact couplings and the border of
@@ -43,7 +43,7 @@ namespace Nodus
     ContactResidual finish(LinearSystem &system);
 
   private:
-    /// Part of a driven rigid body in the jump of a site: weight T + omega x arm.
+    /// Part of a driven rigid body in the jump of a site: weight T + omega x arm (eq. R4).
     struct RigidShare
     {
       unsigned int body   = dealii::numbers::invalid_unsigned_int;

@@ -40,7 +40,7 @@ namespace Nodus
     /// f at reference position @p X and slip rate @p rate [length/time].
     double factor(const Point &X, double rate) const;
 
-    /// mu lambda_s <= 0: minus the limit [pressure], and its derivative with respect to @p lambda.
+    /// mu lambda_s <= 0: minus the limit [pressure], and its derivative with respect to @p lambda (eqs. F1 and F2).
     double threshold(double lambda, double factor) const;
     double slope(double lambda, double factor) const;
 

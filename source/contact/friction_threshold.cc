@@ -19,6 +19,7 @@ namespace Nodus
     using ContactLaw = ContactPairParameters::ContactLaw;
   } // namespace
 
+  /// Eq. L2.
   Status::Change Status::threshold_change(const std::vector<double> &site_pressure) const
   {
     const MPI_Comm            communicator = surfaces_.layout().communicator;

@@ -21,7 +21,7 @@ namespace Nodus
 
     /// The state has been taken over from another mesh, and no equilibrium has been found on this one.
     bool on_new_mesh = false;
-    /// Then, per site: it sticks, and so did all that its state has been interpolated between.
+    /// Then, per site: it was closed, and so was all that its state has been interpolated between.
     std::vector<char> stuck;
   };
 } // namespace Nodus

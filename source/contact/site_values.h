@@ -7,16 +7,17 @@
 
 namespace Nodus
 {
-  /// Contact pressure of every site, 0 where open [pressure]: lambda_bar = (M S lambda)_j / m_j at slave nodes, lambda
-  /// interpolated at integration points, open ones too. Collective.
+  /// Contact pressure of every site (eq. S1) [pressure]: lambda_bar = (M S lambda)_j / m_j at slave nodes, where an
+  /// open one has its neighbours' share with consistent weights, 0 otherwise; lambda interpolated at integration
+  /// points, open ones too. Collective.
   std::vector<double> site_pressure(const ContactSurfaces     &surfaces,
                                     const SurfaceWeights      &weights,
                                     const Status              &status,
                                     const std::vector<double> &lambda);
 
-  /// What the status tests look at. Friction as the pressure: the weighted friction traction over the weighted
-  /// threshold at slave nodes, Lambda interpolated in space at integration points. `Status test = raw` takes the nodal
-  /// unknowns. Right at owned sites. Collective.
+  /// What the status tests look at (eq. S1). Friction as the pressure: at slave nodes the weighted mean of Lambda by
+  /// components, of nodes with friction; at integration points Lambda interpolated in space. `Status test = raw` takes
+  /// the nodal unknowns. Right at owned sites. Collective.
   StatusInput status_input(const std::vector<ContactPairParameters> &pairs,
                            const ContactSurfaces                    &surfaces,
                            const Pairing                            &pairing,

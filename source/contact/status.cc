@@ -151,6 +151,7 @@ namespace Nodus
     return c;
   }
 
+  /// Eq. S2.
   Contradiction
   Status::contradiction(const StatusInput &input, const unsigned int site, const double pressure, double &size) const
   {
@@ -237,7 +238,7 @@ namespace Nodus
     }
 
     // Stick would take a site that closes back to where the increment began. One that has come farther than friction
-    // can hold slips: eq. 7 with the threshold of the pressure that eq. 2 closes it with.
+    // can hold slips (eq. S3): eq. 7 with the threshold of the pressure that eq. 2 closes it with.
     const auto held = [&](const unsigned int k)
     {
       const unsigned int p         = surfaces_.pair(k);

@@ -21,7 +21,7 @@ namespace Nodus
     std::vector<double>                pressure; ///< lambda_bar (weighted) or lambda (raw) [pressure]
     std::vector<double>                distance; ///< d_n > 0 penetration [length]
     std::vector<std::array<double, 2>> Lambda;   ///< friction semi-multiplier in the tangent frame
-    std::vector<std::array<double, 2>> slip;     ///< tangential jump of the step's displacement, scaled as
+    std::vector<std::array<double, 2>> slip;     ///< tangential jump of the increment, scaled as
                                                  ///< SitePairing::friction_scale says [length]
   };
 
@@ -123,12 +123,12 @@ namespace Nodus
     {
       return now_.adjustment[site] * (interferes(surfaces_.pair(site)) ? 1. - resolved_ : 1.);
     }
-    /// rho_n = h_n of the site's pair [pressure/length].
+    /// rho_n = h_n of the site's pair (eq. Q1) [pressure/length].
     double normal_augmentation(const unsigned int site) const
     {
       return normal_augmentation_[surfaces_.pair(site)];
     }
-    /// rho_tau = h_tau for a friction threshold: the friction traction is augmented as the normal one [1/length].
+    /// rho_tau = h_tau for a friction threshold (eq. Q2): friction is augmented as pressure is [1/length].
     double tangential_augmentation(const unsigned int site, const double threshold) const
     {
       const unsigned int pair = surfaces_.pair(site);
@@ -197,7 +197,7 @@ namespace Nodus
       bool                      to_regularised = false; ///< from here on laws are regularised where that is possible
       std::vector<unsigned int> sites;                  ///< of this rank that changed
     };
-    /// Tests every site and changes those that contradict their status (eq. 2, 3, 7, 8); begin_loop() comes first. Once
+    /// Tests every site and changes those that contradict their status (eq. 2, 7, S2); begin_loop() comes first. Once
     /// a status vector comes back, only the contradicting site of lowest order (ContactSurfaces) changes in a pass:
     /// Murty's least-index rule, which is finite for frictionless contact at frozen geometry where changing all at once
     /// may cycle. Where one comes back even so (friction), no vector may satisfy all sites: those that take part in the
@@ -210,8 +210,8 @@ namespace Nodus
 
     /// Until begin_increment():
     /// - Integration points have the pressure lambda - rho_n d_n where that is negative, and the friction direction
-    ///   Lambda + rho_tau slip projected on the unit ball. Frictionless, this is the saddle point of an augmented
-    ///   Lagrangian: it exists, and statuses that belong to it.
+    ///   Lambda + rho_tau slip projected on the unit ball (eq. F3). Frictionless, this is the saddle point of an
+    ///   augmented Lagrangian: it exists, and statuses that belong to it.
     /// - Consistent weights with friction are lumped: a node rubs with the threshold of its own mean pressure, not with
     ///   those of its neighbours, which would go on where it opens. Its mean pressure has the same equations as before.
     void regularise()

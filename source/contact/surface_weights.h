@@ -21,7 +21,7 @@ namespace Nodus
     unsigned int site = dealii::numbers::invalid_unsigned_int;
   };
 
-  /// Quadrature of the slave surfaces: M_ij = sum over points of weight phi_i phi_j, m_j = sum of weight phi_j.
+  /// Quadrature of the slave surfaces (eq. W1): M_ij = sum over points of weight phi_i phi_j, m_j of weight phi_j.
   ///
   /// `nodal quadrature` (trapezoid, Simpson) and `dual` (biorthogonal multipliers, m_j = int phi_j) have one point a
   /// node, so that every product of filtered fields is nodal; `consistent` has Gauss points. The averaged scheme has
@@ -48,8 +48,8 @@ namespace Nodus
       return area_;
     }
 
-    /// (M f)_j / m_j for a nodal field: the weighted nodal value that statuses are tested with; right where all faces
-    /// of the node are here, as for own nodes.
+    /// (M f)_j / m_j for a nodal field (eq. W2): the weighted nodal value that statuses are tested with; right where
+    /// all faces of the node are here, as for own nodes.
     std::vector<double> weighted(const std::vector<double> &nodal_field) const;
 
   private:

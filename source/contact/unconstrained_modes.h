@@ -26,8 +26,8 @@ namespace Nodus
     std::vector<unsigned int> body; ///< indices
   };
 
-  /// Finds the rigid motions of the bodies, alone or together, that nothing resists: the null vectors of the sum of the
-  /// squares of all motions that are held. Bodies count as connected.
+  /// Finds the rigid motions of the bodies, alone or together, that nothing resists (eq. U1): the null vectors of the
+  /// sum of the squares of all motions that are held. Bodies count as connected.
   class UnconstrainedModes
   {
   public:

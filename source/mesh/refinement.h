@@ -24,9 +24,10 @@ namespace Nodus
     double relative_error(const Bodies::Triangulation &triangulation) const;
   };
 
-  /// Sets the flags of @p triangulation that @p parameters ask for; @p n_unknowns: displacement degrees of freedom now.
-  /// Cells stay between the refinement of their body and 'Maximum level' beyond it. Where too many unknowns would
-  /// arise, the cells with the largest errors are refined alone. @returns whether the mesh will change. Collective.
+  /// Sets the flags of @p triangulation that @p parameters ask for (eq. A3); @p n_unknowns: displacement degrees of
+  /// freedom now. Cells stay between the refinement of their body and 'Maximum level' beyond it. Where too many
+  /// unknowns would arise, the cells with the largest errors are refined alone. @returns whether the mesh will change.
+  /// Collective.
   bool mark_cells(const AdaptivityParameters        &parameters,
                   const std::vector<BodyParameters> &bodies,
                   const RefinementIndicator         &indicator,

@@ -3,7 +3,7 @@
 
 namespace Nodus
 {
-  /// Energies of all bodies since the start [energy]: a quasi-static balance, so that
+  /// Energies of all bodies since the start (eqs. E2 and E3) [energy]: a quasi-static balance, so that
   /// external + released + contact = stored + friction + plastic up to what finite increments leave.
   ///
   /// Works are those of the mean of the forces at both ends of an increment (trapezoidal rule). Friction is dissipated

@@ -102,7 +102,7 @@ namespace Nodus
     }
     /// What the unknowns still lack of the prescribed values, zero at free components.
     Components missing(unsigned int i) const;
-    /// The spin of R by a variation of theta: delta R = [spin delta theta]x R.
+    /// The spin of R by a variation of theta: delta R = [spin delta theta]x R (eq. R2).
     dealii::Tensor<2, dim> spin(unsigned int i) const;
 
     /// unknowns += factor * correction, six of each body. @throws SolverFailure where a body turns by more than half

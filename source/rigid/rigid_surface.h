@@ -21,7 +21,7 @@ namespace Nodus
     std::array<Vector3, 2> direction;              ///< unit, of the principal curvatures
     std::array<double, 2>  curvature = {{0., 0.}}; ///< > 0 where the rigid body is convex [1/length]
 
-    /// Derivatives of the normal and of x with respect to the other point.
+    /// Derivatives of the normal and of x with respect to the other point (eq. R1).
     dealii::Tensor<2, dim> normal_derivative() const;
     dealii::Tensor<2, dim> slide() const;
   };

@@ -54,7 +54,7 @@ namespace Nodus
     State             &now       = states_.now;
     const State       &start     = states_.committed;
 
-    // What the bodies take in.
+    // What the bodies take in (eq. E2).
     const Vector applied     = equilibrium_.applied_forces();
     const double rest        = increment.left_to_release(increment.end),
                  rest_before = increment.left_to_release(increment.begin);

@@ -70,7 +70,7 @@ namespace Nodus
     forces_.drag = 0.;
     motions_unknown_ =
         !increment.on_new_mesh() && increment.begins_interval() && model_.contact->surfaces().n_pairs() > 0;
-    // Where a displacement was prescribed until the interval began, the force that held it goes to zero in its course.
+    // Where a displacement was prescribed until the interval began, the force that held it goes to zero in it (eq. B4).
     const auto  &constraints = model_.boundary_conditions->homogeneous_constraints();
     const double rest        = increment.left_to_release(increment.end);
     for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
@@ -163,7 +163,7 @@ namespace Nodus
     return norms;
   }
 
-  /// Contact terms of the system at the trial, and the norms of its residual.
+  /// Contact terms of the system at the trial, and the norms of its residual (eqs. N3 and N4).
   NewtonProblem::Norms Equilibrium::assemble_contact()
   {
     const auto  timer = journal_.profile.time(Phase::contact_assembly);

@@ -159,6 +159,7 @@ namespace Nodus
     return false;
   }
 
+  /// Eqs. L1 and L4.
   bool IncrementLoops::geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing, const bool once)
   {
     ++journal_.counts.geometry;

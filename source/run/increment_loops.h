@@ -10,8 +10,8 @@
 
 namespace Nodus
 {
-  /// The three nested fixed-point loops of an increment around Newton: geometry, friction thresholds, statuses. Those
-  /// that are merged into Newton's iteration are passed through once.
+  /// The three nested fixed-point loops of an increment around Newton (theory section 21.1): geometry, friction
+  /// thresholds, statuses. Those that are merged into Newton's iteration are passed through once.
   class IncrementLoops
   {
   public:

@@ -7,8 +7,8 @@
 
 namespace Nodus
 {
-  /// The attempts at an increment, one after the other until one succeeds: which loops are merged into Newton's
-  /// iteration, and how it starts. Each starts from the state that the increment began with.
+  /// The attempts at an increment (theory section 21.3), one after the other until one succeeds: which loops are merged
+  /// into Newton's iteration, and how it starts. Each starts from the state that the increment began with.
   class Strategy
   {
   public:

@@ -10,9 +10,9 @@
 
 namespace Nodus
 {
-  /// Anderson's mixing for a fixed point x = g(x) of displacements. With the last steps s_i and the changes y_i of the
-  /// correction d = g(x) - x that they brought about, the next step is d - sum_i gamma_i (s_i + y_i) with the gamma
-  /// that minimise |d - sum_i gamma_i y_i|: the secant method where errors have one direction.
+  /// Anderson's mixing for a fixed point x = g(x) of displacements (eq. L4). With the last steps s_i and the changes
+  /// y_i of the correction d = g(x) - x that they brought about, the next step is d - sum_i gamma_i (s_i + y_i) with
+  /// the gamma that minimise |d - sum_i gamma_i y_i|: the secant method where errors have one direction.
   class AndersonMixing
   {
   public:

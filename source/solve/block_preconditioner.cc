@@ -49,7 +49,7 @@ namespace Nodus
         if (regularisation(a, a) == 0. && C_node.row(a).isZero(0.)) // a void multiplier
           regularisation(a, a) = 1.;
       }
-      // A slipping node that Newton moves back inside its threshold has a negative C, of which D must stay clear.
+      // C >= 0 but for round-off, which D stays clear of: slip inside of the unit ball has the rows of stick (eq. 48).
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(C_node);
       const Eigen::Matrix3d D = regularisation + eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.).asDiagonal() *
                                                      eigen.eigenvectors().transpose();

@@ -13,8 +13,8 @@
 
 namespace Nodus
 {
-  /// Augmented block preconditioner of a SaddlePointOperator: with D = node-diagonal blocks of C, plus 1/gamma where
-  /// the multiplier is coupled to displacements, it applies
+  /// Augmented block preconditioner of a SaddlePointOperator (eq. M3): with D = node-diagonal blocks of C, plus 1/gamma
+  /// where the multiplier is coupled to displacements, it applies
   ///
   ///     u = AMG(f + B^T D^-1 g),   AMG: a cycle on K + B^T D^-1 B,
   ///     m = D^-1 (B u - g),

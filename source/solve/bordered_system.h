@@ -11,7 +11,7 @@
 
 namespace Nodus
 {
-  /// A LinearSystem with its border,
+  /// A LinearSystem with its border (eq. M1),
   ///
   ///     [ A  B ] [ x ]   [ a ]
   ///     [ C  D ] [ q ] = [ b ],   q = P y + p,

@@ -88,8 +88,8 @@ namespace Nodus
     has_springs_    = dealii::Utilities::MPI::max(here ? 1 : 0, nodes_.communicator()) != 0;
   }
 
-  /// Finds the constraints of a site and its basis: directions of the constraints, those of stiff rows, prescribed
-  /// displacements, and what is left.
+  /// Finds the constraints of a site and its basis (theory section 25): directions of the constraints, those of stiff
+  /// rows, prescribed displacements, and what is left.
   void Condensation::classify(Site &site, const Matrix3 &C) const
   {
     const BlockCsrMatrix &K = system_.bulk();
@@ -171,6 +171,7 @@ namespace Nodus
     return inverse;
   }
 
+  /// Eq. D2.
   void Condensation::make_rows()
   {
     for (const Site &site : sites_)
@@ -342,7 +343,7 @@ namespace Nodus
     for (std::size_t i = 0; i < u_.size(); ++i)
       u[i] += particular_[i];
 
-    // m = D (B u - g), and what is left of equilibrium goes to the constraints
+    // m = D (B u - g), and what is left of equilibrium goes to the constraints (eq. D3)
     replaced_->vmult(f_.data(), u);
     system_.add_coupling(u, f_.data());
     for (std::size_t i = 0; i < multiplier_.size(); ++i)

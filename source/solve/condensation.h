@@ -27,7 +27,7 @@ namespace Nodus
     using std::runtime_error::runtime_error;
   };
 
-  /// Exact elimination of the multipliers and of the slave displacements that they hold (theory section 7).
+  /// Exact elimination of the multipliers and of the slave displacements that they hold (theory section 25, eq. D1-D3).
   ///
   /// The three multipliers of a slave node are turned until their compliance C is diagonal. Where it vanishes the row
   /// of B is a constraint b u = g, which gives the displacement of the slave node along b by that of other nodes;

@@ -74,7 +74,7 @@ namespace Nodus
     }
   };
 
-  /// One Newton correction: (bulk + contact + variation) delta = rhs, indefinite. Without the variation it is
+  /// One Newton correction (eq. M1): (bulk + contact + variation) delta = rhs, indefinite. Without the variation it is
   ///
   ///     [ bulk + C_uu   B^T ] [du]   [ rhs_u ]
   ///     [ B             -C  ] [dm] = [ rhs_m ],   m = (lambda, Lambda), C >= 0 and coupled only
@@ -101,7 +101,7 @@ namespace Nodus
     std::vector<double> multiplier_scale;
   };
   /// Adds to the border how the moment of a force, work conjugate to arm, changes with the spin of its rigid body:
-  /// delta (arm x force) = (omega x arm) x force.
+  /// delta (arm x force) = (omega x arm) x force (eq. R3).
   inline void add_turn(const BlockLayout &layout,
                        const unsigned int body,
                        const Vector3     &arm,

@@ -15,9 +15,9 @@ namespace Nodus
 
     constexpr double forcing_factor = 0.9;
 
-    /// Forcing terms of Eisenstat & Walker (1996), choice 2. @p residual and @p before in units of the tolerance; @p
-    /// last: forcing term before this one. The last correction need not overshoot the tolerance by more than a digit,
-    /// and terms fall no faster than Newton converges.
+    /// Forcing terms (eq. N6): choice 2 of Eisenstat & Walker (1996). @p residual and @p before in units of the
+    /// tolerance; @p last: forcing term before this one. The last correction need not overshoot the tolerance by more
+    /// than a digit, and terms fall no faster than Newton converges.
     double forcing_term(const double residual, const double before, const double last, const double largest)
     {
       const double ratio = residual / before;
@@ -40,6 +40,7 @@ namespace Nodus
   {
   }
 
+  /// Eq. N5.
   double Newton::residual(const NewtonProblem::Norms &norms) const
   {
     return std::max(norms.force / parameters_.force_tolerance,

@@ -87,7 +87,7 @@ namespace Nodus
     void add_coupling(const double *u, double *f) const;
     /// C_uu between the components of an owned node.
     Eigen::Matrix3d own_coupling(DoFIndex node) const;
-    /// Stiffness that each owned multiplier sees, |B_i|^2 / (B diag(K)^-1 B^T)_ii; 0 for multipliers without coupling.
+    /// Stiffness that each owned multiplier sees, |B_i|^2 / (B diag(K)^-1 B^T)_ii (eq. M2); 0 for those uncoupled.
     const std::vector<double> &stiffness() const
     {
       return stiffness_;

@@ -14,9 +14,10 @@ namespace Nodus
   ///     x_next = G - omega f,   omega = (G - G') . (f - f') / |f - f'|^2.
   ///
   /// and x_next = G where that contracts by a factor of 2 at least. A map that contracts, or grows, by one factor in
-  /// every direction is solved in one secant, which is what thresholds of friction do along a load path (factor -mu/s,
-  /// theory section 12). Where the error hardly shrinks even so, it has several directions: then the last secants are
-  /// combined, x_next = G - sum_i gamma_i dG_i with the gamma that minimise |f - sum_i gamma_i df_i| (Anderson).
+  /// every direction is solved in one secant, which is what thresholds of friction do along a load path (factor
+  /// -mu/slope, theory section 12; eq. L3). Where the error hardly shrinks even so, it has several directions: then the
+  /// last secants are combined, x_next = G - sum_i gamma_i dG_i with the gamma that minimise |f - sum_i gamma_i df_i|
+  /// (Anderson).
   class SecantAcceleration
   {
   public:

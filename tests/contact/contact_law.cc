@@ -457,7 +457,7 @@ int main(int argc, char **argv)
   for (const Kind &kind : kinds)
     for (const Case &what : cases)
     {
-      // only integration points hold their laws in the mean; one jump, one status
+      // only integration points have regularised laws; one jump, one status
       if (what.in_the_mean ? kind.n_jumps == kind.n_nodes : kind.n_jumps == 1 && what.status.size() > 1)
         continue;
       compare(kind, what);

@@ -18,9 +18,9 @@ namespace Nodus
   struct DeclaredKey;
 
   /// Every struct below is one subsection of the parameter file; the text of a key is the name of the
-  /// member with blanks, "Young's modulus" and the like excepted. Keys are bound to members in
-  /// source/parameters.cc and checked in source/parameters_check.cc; values here are the defaults
-  /// that `nodus --document` prints.
+  /// member with blanks, "Young's modulus" and the like excepted. Keys are bound to members and checked
+  /// in source/parameters/ (parameters*.cc); values here are the defaults that `nodus --document`
+  /// prints.
 
   /// A part of the boundary: faces of one body (or of all) with the given boundary ids.
   struct RegionParameters

@@ -10,8 +10,9 @@
 
 namespace Nodus
 {
-  /// From a level of smoothed aggregation (Vanek, Mandel, Brezina 1996) to the next coarser one, in node blocks: six
-  /// unknowns for each aggregate of nodes, which combine the six modes there. On the coarse level they are two nodes.
+  /// From a level of smoothed aggregation (Vanek, Mandel, Brezina 1996) to the next coarser one (eq. M4), in node
+  /// blocks: six unknowns for each aggregate of nodes, which combine the six modes there. On the coarse level they are
+  /// two nodes.
   ///
   ///     P = (1 - omega D^-1 A) P_0,   A_coarse = P^T A P
   ///

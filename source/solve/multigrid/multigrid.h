@@ -16,7 +16,7 @@ namespace Nodus
   /// the other; zero where nothing but the diagonal of @p K couples. Collective.
   std::vector<double> rigid_body_modes(const BlockCsrMatrix &K, const std::vector<Point> &node_positions);
 
-  /// Smoothed aggregation multigrid, one V cycle: levels in node blocks down to some thousand unknowns, ML below.
+  /// Smoothed aggregation multigrid, one V cycle: levels in node blocks down to 400 unknowns, ML below (section 27).
   class Multigrid
   {
   public:
