@@ -1,6 +1,8 @@
 #include "contact/face_variation.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 // How the integration points of a face move: with the corners of the overlaps, or sliding on the master.
@@ -11,6 +13,8 @@ namespace Nodus
   {
     /// Edges that are as parallel as this (sine) have no crossing that follows both: matching faces.
     constexpr double parallel = 1e-6;
+    /// Corners of an overlap that are in a line span triangles without area, which do not count.
+    constexpr double smallest_sine = 1e-10;
 
     using Plane2 = Eigen::Vector2d;
 
@@ -225,7 +229,9 @@ namespace Nodus
     const Row2  &first = frame.corners_motion[0];
     const Row2   d_a = frame.corners_motion[place.last - 1] - first, d_b = frame.corners_motion[place.last] - first;
     Eigen::Matrix<double, n_coordinates, columns, Eigen::RowMajor> result;
-    const Row log_area = (d_a.row(0) * b[1] - d_a.row(1) * b[0] + a[0] * d_b.row(1) - a[1] * d_b.row(0)) / twice_area;
+    const Row                                                      log_area =
+        (d_a.row(0) * b[1] - d_a.row(1) * b[0] + a[0] * d_b.row(1) - a[1] * d_b.row(0)) /
+        std::max(twice_area, smallest_sine * (a.squaredNorm() + b.squaredNorm()) + std::numeric_limits<double>::min());
     if (face_.dual_slope() > 0.)
       for (unsigned int l = 0; l < local_.size(); ++l)
         d_coverage_.middleCols<3>(3 * local_.place[l]) +=
