@@ -9,7 +9,7 @@
 
 namespace Nodus
 {
-  /// Jumps averaged over the slave faces around each slave node, for the pairs with that scheme (theory section 3 C):
+  /// Jumps averaged over the slave faces around each slave node, for the pairs with that scheme (theory section 7):
   /// [[u]]_j = int psi_j [[u]] / int psi_j over the part of the slave surface that has a partner.
   ///
   /// On a covered face psi is biorthogonal to the slave shape functions, so that the slave part of the jump is u_j. On
