@@ -64,7 +64,7 @@ namespace Nodus
   };
 
   /// Closest point of face @p f to @p p: local coordinates in [0, 1]^2 (clamped at edges and vertices).
-  /// Bounded projected Newton; returns the squared distance.
+  /// Bounded projected Gauss-Newton; returns the squared distance.
   double closest_point(const SurfaceGeometry &surface, unsigned int f, const Point &p, double &xi, double &eta);
 } // namespace Nodus
 

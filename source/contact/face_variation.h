@@ -13,11 +13,11 @@ namespace Nodus
 {
   /// What a slave face adds to the rows of its slave nodes (AveragedJump, before the division by their areas), and how
   /// that follows the nodes: integration points move with the overlaps, or slide on the master; their areas, the dual
-  /// functions and the covered part change. Exact for the discrete integrals, but for
+  /// functions and the covered part change (eq. G19-G27). Exact for the discrete integrals, but for
   /// - points that smoothing shifts along the surfaces as these bend, which would couple every force with two rings of
   ///   nodes on both sides (the offsets themselves are in, by parts());
-  /// - the covered part of faces that stick out of the master and are integrated by a fixed rule, which jumps with its
-  ///   points;
+  /// - the covered part of faces that stick out of the master and are integrated by a fixed rule: it jumps with its
+  ///   points, and the change of their areas is not in it either;
   /// - normals that are averaged over the face (AveragedJump::Row::normal).
   class FaceVariation
   {

@@ -12,7 +12,8 @@
 
 namespace Nodus
 {
-  /// What the contact terms gain in the tangent when pairing, areas and frames follow the surfaces: with the jump
+  /// What the contact terms gain in the tangent when pairing, areas and frames follow the surfaces (eq. G11-G17): with
+  /// the jump
   /// [[x]] = G x + offset of a site, its normal n, its area m and r, work conjugate to the jump,
   ///
   /// - contact forces: delta G^T r and G^T delta r, where r turns with the frame and follows the slip;
@@ -23,9 +24,9 @@ namespace Nodus
   /// of sticking sites, the length and direction of Lambda. Rows of multipliers are divided by area and threshold
   /// before they vary: these are factors of laws that hold in the end.
   ///
-  /// Left out: how smoothing shifts points along the surfaces (FaceVariation), areas of the nodal scheme, slips where a
-  /// point has several nodes (consistent weights) or a site is an integration point, normals averaged over faces (of
-  /// slave nodes without a projection of their own).
+  /// What is left out stands with its sizes in theory section 18: how smoothing shifts points along the surfaces
+  /// (FaceVariation), areas but for the averaged scheme, friction laws of points with several nodes and of integration
+  /// points, normals averaged over faces, sites without force.
   class GeometryTangent
   {
   public:
@@ -60,7 +61,8 @@ namespace Nodus
 
     /// Derivatives with respect to sources.
     using Motion = std::vector<std::pair<unsigned int, Vector3>>;
-    /// How the local coordinates of the projection of a site follow: of a rigid master, along its principal directions.
+    /// How the local coordinates of the projection of a site follow (eq. G18): of a rigid master, along its principal
+    /// directions.
     std::array<Motion, 2>       projection_motion(unsigned int site) const;
     void                        add_slave_motion(unsigned int site, const Vector3 &dual, Motion &motion) const;
     std::vector<NodeDerivative> normal_derivative(unsigned int site) const;

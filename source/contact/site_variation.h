@@ -89,7 +89,7 @@ namespace Nodus
       return weight_;
     }
 
-    /// Replaces the variation of the weights by that after the change that balances moments (JumpOperator). @p turn:
+    /// Replaces the variation of the weights by that after the change that balances moments (eq. G28-G30). @p turn:
     /// derivatives of the tangents with respect to the normal.
     void balance(const SitePairing            &site,
                  const std::array<Matrix3, 2> &turn,
