@@ -155,11 +155,6 @@ namespace Nodus
         norms         = assemble_contact();
         norms.changes = changes;
       }
-    if (merged_.geometry)
-    {
-      const auto timer = journal_.profile.time(Phase::contact_assembly);
-      contact.add_geometry_tangent(system_);
-    }
     return norms;
   }
 
@@ -206,6 +201,11 @@ namespace Nodus
 
   unsigned int Equilibrium::solve(BlockVector &correction, const double relative_tolerance)
   {
+    if (merged_.geometry) // a converged iterate never needs it
+    {
+      const auto timer = journal_.profile.time(Phase::contact_assembly);
+      model_.contact->add_geometry_tangent(system_);
+    }
     const auto timer = journal_.profile.time(Phase::solver_iterations);
     iterate_         = states_.now.unknowns;
     rigid_iterate_   = states_.now.rigid;
