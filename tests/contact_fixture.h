@@ -32,6 +32,7 @@ struct ContactFixture
                                              *surfaces,
                                              std::vector<double>(pairs.size(), normal_augmentation),
                                              std::vector<double>(pairs.size(), 1.),
+                                             strategy,
                                              statuses);
     assembler = std::make_unique<Nodus::ContactAssembler>(*surfaces, pairing, jump, weights, *status);
 
@@ -85,6 +86,7 @@ struct ContactFixture
   Nodus::Pairing                            pairing;
   Nodus::JumpOperator                       jump;
   Nodus::SurfaceWeights                     weights;
+  Nodus::StrategyParameters                 strategy;
   Nodus::Status::State                      statuses;
   std::unique_ptr<Nodus::Status>            status;
   std::unique_ptr<Nodus::ContactAssembler>  assembler;

@@ -29,6 +29,7 @@ namespace Nodus
 
   ContactInterface::ContactInterface(const std::vector<ContactPairParameters> &pairs,
                                      const std::vector<double>                &stiffness,
+                                     const StrategyParameters                 &strategy,
                                      const Bodies                             &bodies,
                                      const dealii::DoFHandler<dim>            &dof_handler,
                                      const dealii::Mapping<dim>               &mapping,
@@ -38,7 +39,7 @@ namespace Nodus
       , rigid_bodies_(rigid_bodies)
       , now_(now)
       , surfaces_(pairs, bodies, dof_handler, mapping)
-      , status_(pairs, surfaces_, normal_augmentation(pairs, stiffness, surfaces_), stiffness, now.statuses)
+      , status_(pairs, surfaces_, normal_augmentation(pairs, stiffness, surfaces_), stiffness, strategy, now.statuses)
       , assembler_(surfaces_, pairing_, jump_, weights_, status_)
   {
     std::vector<unsigned int> rigid_numbers(bodies.size(), dealii::numbers::invalid_unsigned_int);

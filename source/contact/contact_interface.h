@@ -33,6 +33,7 @@ namespace Nodus
     /// @p now is set to that before the first pairing.
     ContactInterface(const std::vector<ContactPairParameters> &pairs,
                      const std::vector<double>                &stiffness,
+                     const StrategyParameters                 &strategy,
                      const Bodies                             &bodies,
                      const dealii::DoFHandler<dim>            &dof_handler,
                      const dealii::Mapping<dim>               &mapping,

@@ -28,9 +28,11 @@ namespace Nodus
                  const ContactSurfaces                    &surfaces,
                  const std::vector<double>                &normal_augmentation,
                  const std::vector<double>                &stiffness,
+                 const StrategyParameters                 &strategy,
                  State                                    &now)
       : pairs_(pairs)
       , surfaces_(surfaces)
+      , strategy_(strategy)
       , normal_augmentation_(normal_augmentation)
       , now_(now)
       , threshold_slope_(surfaces.n_sites(), 0.)
@@ -105,7 +107,7 @@ namespace Nodus
   {
     for (unsigned int p = 0; p < pairs_.size(); ++p)
       if (can_project(p) || can_lump(p))
-        return true;
+        return strategy_.uses(Remedy::regularised_law);
     return false;
   }
 
@@ -128,6 +130,7 @@ namespace Nodus
     visited_.clear();
     opened_.assign(now_.contact.size(), false);
     frozen_.assign(now_.contact.size(), false);
+    seen_.assign(now_.contact.size(), {{-1., -1., -1.}});
     one_at_a_time_ = false;
     freezes_       = false;
     merged_        = merged;
@@ -286,7 +289,9 @@ namespace Nodus
     update.period         = met - differs.begin() + 1;
     update.cycles         = merged_ && ++returns_ > tolerated_returns;
     update.to_regularised = !regularised_ && (update.cycles || !merged_) && can_regularise();
-    freezes_              = freezes_ || (one_at_a_time_ && !update.to_regularised);
+    const bool alternates = strategy_.uses(Remedy::one_status_at_a_time);
+    freezes_              = freezes_ || (!merged_ && !update.to_regularised && (one_at_a_time_ || !alternates) &&
+                            strategy_.uses(Remedy::frozen_statuses));
     std::vector<unsigned int> cycling;
     for (unsigned int back = 0; back < update.period; ++back)
     {
@@ -312,7 +317,8 @@ namespace Nodus
       update.frozen = freeze(cycling);
     else if (!merged_ && !one_at_a_time_)
       seen_.assign(now_.contact.size(), {{-1., -1., -1.}});
-    one_at_a_time_ = !merged_ && !freezes_ && !update.to_regularised;
+    one_at_a_time_       = alternates && !merged_ && !freezes_ && !update.to_regularised;
+    update.one_at_a_time = one_at_a_time_;
     visited_.assign(1, code());
   }
 

@@ -58,12 +58,13 @@ namespace Nodus
       std::vector<double>                friction_factor; ///< of the last slip rate
     };
 
-    /// @p normal_augmentation and @p stiffness of each pair [pressure/length, pressure]. @p now outlives it, and is
-    /// what it reads and moves; it is set to that of open sites.
+    /// @p normal_augmentation and @p stiffness of each pair [pressure/length, pressure]; @p strategy: what is tried
+    /// where statuses cycle. @p now outlives it, and is what it reads and moves; it is set to that of open sites.
     Status(const std::vector<ContactPairParameters> &pairs,
            const ContactSurfaces                    &surfaces,
            const std::vector<double>                &normal_augmentation,
            const std::vector<double>                &stiffness,
+           const StrategyParameters                 &strategy,
            State                                    &now);
 
     /// Number of local contact sites.
@@ -195,6 +196,7 @@ namespace Nodus
       bool                      cycles         = false; ///< merged loop: visited again too often
       unsigned int              frozen         = 0;     ///< sites that keep their status from here on, on all ranks
       bool                      to_regularised = false; ///< from here on laws are regularised where that is possible
+      bool                      one_at_a_time  = false; ///< from here on one site changes in a pass
       std::vector<unsigned int> sites;                  ///< of this rank that changed
     };
     /// Tests every site and changes those that contradict their status (eq. 2, 7, S2); begin_loop() comes first. Once
@@ -276,6 +278,7 @@ namespace Nodus
 
     const std::vector<ContactPairParameters> &pairs_;
     const ContactSurfaces                    &surfaces_;
+    const StrategyParameters                 &strategy_;
     std::vector<double>                       normal_augmentation_;
     std::vector<FrictionLimit>                limits_; ///< of the pairs
     State                                    &now_;

@@ -22,7 +22,7 @@ namespace Nodus
                                     "open nodes,slip nodes,stick nodes,unpaired nodes,"
                                     "geometry passes,threshold passes,status passes,Newton iterations,"
                                     "Krylov iterations,status changes,tension,penetration,over cone,against slip,"
-                                    "longest status cycle,fallbacks\n";
+                                    "longest status cycle,fallbacks,cut-backs";
 
     constexpr auto reaction_header = "increment,time,condition,force x [force],force y [force],force z [force]\n";
 
@@ -69,6 +69,9 @@ namespace Nodus
       , communicator_(communicator)
       , rows_{contact_header, reaction_header, energy_header, iteration_header, ""}
   {
+    for (const char *name : remedy_names)
+      rows_.contact += ',' + std::string(name);
+    rows_.contact += '\n';
     make_results_folder(folder, communicator);
   }
 
@@ -92,7 +95,10 @@ namespace Nodus
                    << pair.status_changes;
       for (const unsigned int n : pair.contradictions)
         contact_rows << ',' << n;
-      contact_rows << ',' << pair.longest_cycle << ',' << counts.fallbacks << '\n';
+      contact_rows << ',' << pair.longest_cycle << ',' << counts.fallbacks << ',' << counts.cut_backs;
+      for (const unsigned int n : counts.remedies)
+        contact_rows << ',' << n;
+      contact_rows << '\n';
     }
     rows_.contact += contact_rows.str();
 

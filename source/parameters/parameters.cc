@@ -320,6 +320,18 @@ namespace Nodus
                         not_negative);
     }
 
+    void add(ParameterHandler &prm, StrategyParameters &strategy)
+    {
+      std::string names;
+      for (const char *name : remedy_names)
+        names += (names.empty() ? "" : "|") + std::string(name);
+      prm.add_parameter("Without",
+                        strategy.without,
+                        "What is not tried where something fails, for studies of what each is good for (see "
+                        "architecture.md) [-]; contact.csv counts how often each was used.",
+                        Patterns::List(Patterns::Selection(names), 0, remedy_names.size(), ","));
+    }
+
     void add(ParameterHandler &prm, LoadSteppingParameters &load)
     {
       const unsigned int many = std::numeric_limits<unsigned int>::max();
@@ -481,9 +493,15 @@ namespace Nodus
     add_subsection(prm, "Status loop", status_loop, "statuses are tested and changed", "");
     add_subsection(prm, "Newton", newton);
     add_subsection(prm, "Linear solver", linear_solver);
+    add_subsection(prm, "Strategy", strategy);
     add_subsection(prm, "Load stepping", load_stepping);
     add_subsection(prm, "Adaptivity", adaptivity);
     add_subsection(prm, "Output", output);
+  }
+
+  bool StrategyParameters::uses(const Remedy remedy) const
+  {
+    return std::find(without.begin(), without.end(), remedy_names[static_cast<unsigned int>(remedy)]) == without.end();
   }
 
   std::string text_of(const MaterialParameters::Law law)

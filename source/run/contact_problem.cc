@@ -29,6 +29,7 @@ namespace Nodus
     void        run();
     void        begin();
     void        validate();
+    void        report_remedies();
     std::string report_profile(bool converged);
 
     const Parameters parameters;
@@ -85,6 +86,7 @@ namespace Nodus
     begin();
     const auto report_anyway = [&]
     {
+      report_remedies();
       if (const std::string problem = report_profile(false); !problem.empty())
         journal.console.line(problem); // why the run ends is what the caller must hear of
     };
@@ -103,8 +105,24 @@ namespace Nodus
       report_anyway();
       throw;
     }
+    report_remedies();
     throw_on_every_rank(report_profile(true), model.communicator);
     journal.console.line("Results: " + parameters.output.results_folder);
+  }
+
+  /// Prints what was tried where something failed, and how often.
+  void ContactProblem::Implementation::report_remedies()
+  {
+    std::string text;
+    auto        name = remedy_names.begin();
+    for (const unsigned int n : journal.used)
+    {
+      if (n > 0)
+        text += (text.empty() ? "" : ", ") + std::string(*name) + ' ' + std::to_string(n);
+      ++name;
+    }
+    if (!text.empty())
+      journal.console.line("\nTried where something failed, times: " + text);
   }
 
   /// Prints the times so far, and more where it was asked for. @returns what went wrong with profile.json, on rank 0.

@@ -57,10 +57,15 @@ namespace Nodus
     LinearSolverParameters parameters = model_.parameters.linear_solver;
     parameters.type                   = chosen_solver(model_.parameters, model_.dof_handler.n_dofs());
     solver_                           = std::make_unique<RescuedSolver>(parameters,
+                                              model_.parameters.strategy.uses(Remedy::direct_solver),
                                               layout,
                                               OwnedNodes(model_.dof_handler, *model_.mapping).X,
                                               journal_.profile,
-                                              [this](const std::string &text) { journal_.console.remark(text); });
+                                              [this](const std::string &text)
+                                              {
+                                                journal_.count(Remedy::direct_solver);
+                                                journal_.console.remark(text);
+                                              });
   }
 
   void Equilibrium::begin_increment(const Increment &increment)
@@ -242,6 +247,8 @@ namespace Nodus
 
   void Equilibrium::move(const double factor, const BlockVector &correction)
   {
+    if (factor < 1.)
+      journal_.count(Remedy::shorter_step);
     states_.now.unknowns = iterate_;
     states_.now.rigid    = rigid_iterate_;
     states_.now.unknowns.add(factor, correction);
@@ -259,6 +266,10 @@ namespace Nodus
       statuses[s] = static_cast<char>(contact.status().status(s));
     journal_.diagnosis.add_statuses(statuses);
     StatusChanges result{update.changes, update.frozen, ""};
+    if (update.one_at_a_time)
+      journal_.count(Remedy::one_status_at_a_time);
+    if (update.frozen > 0)
+      journal_.count(Remedy::frozen_statuses);
     if (update.changes == 0)
       return result;
     const std::vector<std::string> loci = contact.loci(update.sites, 3);
@@ -269,6 +280,7 @@ namespace Nodus
                           SolverFailure::Kind::status_cycle);
     if (update.to_regularised)
     {
+      journal_.count(Remedy::regularised_law);
       journal_.console.remark("the statuses cycle: from here the laws are regularised (multipliers projected at "
                               "integration points, weights lumped)");
       contact.pass_to_regularised_law(states_.now.unknowns, states_.committed.unknowns.block(0));

@@ -41,8 +41,9 @@ namespace Nodus
       catch (const SolverFailure &failure)
       {
         step *= 0.5;
-        if (step < smallest_step)
+        if (step < smallest_step || !model.parameters.strategy.uses(Remedy::smaller_friction_steps))
           throw;
+        journal.count(Remedy::smaller_friction_steps);
         std::ostringstream text;
         text << failure.what() << "; back to " << from << " of the friction";
         journal.console.remark(text.str());

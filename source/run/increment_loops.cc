@@ -11,9 +11,14 @@ namespace Nodus
   {
     /// Newton iterations without progress after which a merged iteration is given up.
     constexpr unsigned int patience = 8;
-    /// Geometry passes that change more than this fraction of the one before are mixed with those before it; with
-    /// rigid bodies that forces drive, those that change more than the second are damped.
-    constexpr double plain_contraction = 0.3, slow_contraction = 0.9;
+    /// Of a Newton step into inverted cells.
+    constexpr unsigned int maximum_halvings = 5;
+    /// Passes whose change is more than this fraction of the one before are mixed with those before them; those of the
+    /// geometry from the fourth on.
+    constexpr double       geometry_contraction = 0.3, threshold_contraction = 0.5;
+    constexpr unsigned int plain_geometry_passes = 3;
+    /// Of the translation of a rigid body among the displacements that are mixed.
+    constexpr double rigid_weight = 1e-6;
     /// Times that a geometry loop may come back to the pass before the last.
     constexpr unsigned int tolerated_geometry_cycles = 2;
     /// Sites whose statuses cycle may contradict them by this much, of the largest pressure or of the cone.
@@ -35,16 +40,17 @@ namespace Nodus
     const MergedLoops &merged  = equilibrium_.merged();
     ContactInterface  &contact = *model_.contact;
     equilibrium_.begin_loops();
-    const Newton newton(model_.parameters.newton, merged.any() ? patience : 0);
+    const Newton newton(
+        model_.parameters.newton, merged.any() ? patience : 0, uses(Remedy::shorter_step) ? maximum_halvings : 0);
 
     FixedPointLoop geometry("geometry", model_.parameters.geometry_loop);
-    AndersonMixing mixing;
+    AndersonMixing mixing(model_.communicator);
     geometry_cycles_ = 0;
     do
     {
       pair();
-      FixedPointLoop     threshold("threshold", model_.parameters.threshold_loop);
-      SecantAcceleration secant(model_.communicator);
+      FixedPointLoop threshold("threshold", model_.parameters.threshold_loop);
+      AndersonMixing threshold_mixing(model_.communicator);
       do
       {
         {
@@ -61,7 +67,7 @@ namespace Nodus
           journal_.pass.status    = statuses.counter() + 1;
           iterate(newton);
         } while (!statuses_converged(statuses));
-      } while (!threshold_converged(threshold, secant));
+      } while (!threshold_converged(threshold, threshold_mixing));
     } while (!geometry_converged(geometry, mixing, merged.geometry || first_iterate));
     if (!merged.status)
       check_frozen_statuses();
@@ -132,7 +138,7 @@ namespace Nodus
     journal_.console.remark("warning: " + text.str());
   }
 
-  bool IncrementLoops::threshold_converged(FixedPointLoop &loop, SecantAcceleration &secant)
+  bool IncrementLoops::threshold_converged(FixedPointLoop &loop, AndersonMixing &mixing)
   {
     ++journal_.counts.threshold;
     if (equilibrium_.merged().threshold)
@@ -146,15 +152,21 @@ namespace Nodus
     const std::vector<double> pressure = contact.pressure();
     const Status::Change      change   = status.threshold_change(pressure);
     const std::string         worst    = contact.locus(change.site);
-    std::vector<double>       next     = secant.next(status.thresholds(), status.thresholds_at(pressure));
-    std::ostringstream        text;
+    std::vector<double>       next     = status.thresholds_at(pressure);
+    mixing.add(status.thresholds(), next);
+    std::ostringstream text;
     text << "threshold changes by " << change.value << ", most at " << worst;
-    if (secant.contraction() > 0.)
-      text << ", " << secant.contraction() << " times the change before";
+    if (mixing.contraction() > 0.)
+      text << ", " << mixing.contraction() << " times the change before";
     journal_.console.remark(text.str());
     note_pass(loop, change.value, worst);
     if (loop.finished(change.value, worst))
       return true;
+    if (mixing.contraction() > threshold_contraction && uses(Remedy::mixed_thresholds))
+    {
+      next = mixing.mixed();
+      journal_.count(Remedy::mixed_thresholds);
+    }
     status.freeze(std::move(next));
     return false;
   }
@@ -190,40 +202,55 @@ namespace Nodus
               ": a slave node crosses an edge of the faceted master and back; try 'Normal = averaged' or "
               "smaller increments",
           SolverFailure::Kind::geometry_cycle);
-    if (model_.rigid_bodies.size() == 0)
+    mixing.add(geometry_values(paired_, rigid_paired_), geometry_values(u, states_.now.rigid));
+    if (loop.counter() >= plain_geometry_passes && value > geometry_contraction * before &&
+        uses(Remedy::mixed_geometry))
     {
-      Vector correction(u);
-      correction -= paired_;
-      const bool mix = loop.counter() >= 3 && value > plain_contraction * before;
-      u              = mixing.next(correction, mix);
-      u += paired_;
-      if (mix)
-      {
-        journal_.console.remark("the geometry loop is slow: the next pass starts where the last ones lead to");
-        model_.contact->gather(states_.now.unknowns, states_.committed.unknowns.block(0));
-      }
-    }
-    else if (cycle || (loop.counter() >= 3 && value > slow_contraction * before))
-    {
-      journal_.console.remark(cycle ? "the geometry loop cycles with period 2: the next pass starts half-way"
-                                    : "the geometry loop does not contract: the next pass starts half-way");
-      start_half_way();
+      journal_.console.remark("the geometry loop is slow: the next pass starts where the last ones lead to");
+      journal_.count(Remedy::mixed_geometry);
+      start_from_mixed(mixing);
     }
     return false;
   }
 
-  /// The next geometry pass starts in the middle between the last pairing and its solution, rigid bodies too.
-  void IncrementLoops::start_half_way()
+  /// What a pass of the geometry loop changes: displacements, and the motions of the driven rigid bodies. The latter
+  /// weigh next to nothing, for the displacements of the bodies' nodes stand for them.
+  std::vector<double> IncrementLoops::geometry_values(const Vector                          &u,
+                                                      const std::vector<RigidBodies::State> &rigid) const
   {
-    Vector &u = states_.now.unknowns.block(0);
-    u.sadd(0.5, 0.5, paired_);
-    for (unsigned int b = 0; b < rigid_paired_.size(); ++b)
-    {
-      RigidBodies::State &now = states_.now.rigid[b];
-      now.translation         = 0.5 * (now.translation + rigid_paired_[b].translation);
-      now.turn                = 0.5 * (now.turn + rigid_paired_[b].turn);
-    }
+    std::vector<double> values;
+    for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
+      values.push_back(u(i));
+    for (const RigidBodies::State &body : rigid)
+      for (unsigned int d = 0; d < dim; ++d)
+      {
+        values.push_back(rigid_weight * body.translation[d]);
+        values.push_back(model_.length_scale * body.turn[d]);
+      }
+    return values;
+  }
+
+  /// The next geometry pass starts where the last ones lead to, rigid bodies too.
+  void IncrementLoops::start_from_mixed(const AndersonMixing &mixing)
+  {
+    const std::vector<double> values = mixing.mixed();
+    auto                      value  = values.begin();
+    Vector                   &u      = states_.now.unknowns.block(0);
+    for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
+      u(i) = *value++;
+    u.compress(dealii::VectorOperation::insert);
+    for (RigidBodies::State &body : states_.now.rigid)
+      for (unsigned int d = 0; d < dim; ++d)
+      {
+        body.translation[d] = *value++ / rigid_weight;
+        body.turn[d]        = *value++ / model_.length_scale;
+      }
     model_.rigid_bodies.move(u);
     model_.contact->gather(states_.now.unknowns, states_.committed.unknowns.block(0));
+  }
+
+  bool IncrementLoops::uses(const Remedy remedy) const
+  {
+    return model_.parameters.strategy.uses(remedy);
   }
 } // namespace Nodus

@@ -4,7 +4,6 @@
 #include "run/equilibrium.h"
 #include "run/fixed_point_loop.h"
 #include "solve/anderson_mixing.h"
-#include "solve/secant_acceleration.h"
 
 #include <functional>
 
@@ -27,12 +26,14 @@ namespace Nodus
     void pair();
     void iterate(const Newton &newton);
     /// @p once: further passes are of no use.
-    bool geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing, bool once);
-    bool threshold_converged(FixedPointLoop &loop, SecantAcceleration &secant);
-    bool statuses_converged(FixedPointLoop &loop);
-    void check_frozen_statuses();
-    void start_half_way();
-    void note_pass(const FixedPointLoop &loop, double value, const std::string &worst);
+    bool                geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing, bool once);
+    bool                threshold_converged(FixedPointLoop &loop, AndersonMixing &mixing);
+    bool                statuses_converged(FixedPointLoop &loop);
+    void                check_frozen_statuses();
+    void                start_from_mixed(const AndersonMixing &mixing);
+    bool                uses(Remedy remedy) const;
+    std::vector<double> geometry_values(const Vector &u, const std::vector<RigidBodies::State> &rigid) const;
+    void                note_pass(const FixedPointLoop &loop, double value, const std::string &worst);
 
     Model                          &model_;
     Journal                        &journal_;

@@ -23,12 +23,20 @@ namespace Nodus
     {
     }
 
+    /// Notes that @p remedy is used.
+    void count(const Remedy remedy)
+    {
+      ++counts.remedies[remedy];
+      ++used[remedy];
+    }
+
     Console                 console;
     Profile                 profile;
     Diagnosis               diagnosis;
     std::unique_ptr<Tables> tables; ///< once the run has begun
     IterationCounts         pass;   ///< numbers of the geometry, threshold and status pass at hand
     IterationCounts         counts; ///< totals of the increment at hand
+    PerRemedy<unsigned int> used;   ///< in the whole run, in increments that failed, too
   };
 } // namespace Nodus
 

@@ -6,6 +6,7 @@
 
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 namespace Nodus
 {
@@ -86,6 +87,7 @@ namespace Nodus
       if (!again)
         give_up(reason.str(), hint, may_shrink);
       journal.console.remark(reason.str() + "; the increment is halved");
+      ++cut_backs_;
       return false;
     }
   }
@@ -100,6 +102,7 @@ namespace Nodus
     report_stabilisation();
     commit();
     path.accept(journal.counts.newton, journal.counts.fallbacks == 0);
+    journal.counts.cut_backs = std::exchange(cut_backs_, 0);
     {
       const auto timer = journal.profile.time(Phase::output);
       parts_.results.update();

@@ -52,6 +52,7 @@ namespace Nodus
     EnergyAudit       audit_;
     unsigned int      first_;                ///< increment of this run
     std::vector<bool> never_closed_;         ///< by pair
+    unsigned int      cut_backs_        = 0; ///< since the last increment that converged
     unsigned int      mesh_repetitions_ = 0; ///< of the increment at hand on a finer mesh
   };
 } // namespace Nodus

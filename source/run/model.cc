@@ -79,8 +79,14 @@ namespace Nodus
         parameters.load_stepping.viscous_stabilisation, bodies, materials, dof_handler, *mapping);
     contact.reset(); // what it refers to is made anew
     rigid_bodies.find_nodes(dof_handler, *mapping);
-    contact = std::make_unique<ContactInterface>(
-        parameters.contact_pairs, pair_stiffness(), bodies, dof_handler, *mapping, rigid_bodies, now.contact);
+    contact = std::make_unique<ContactInterface>(parameters.contact_pairs,
+                                                 pair_stiffness(),
+                                                 parameters.strategy,
+                                                 bodies,
+                                                 dof_handler,
+                                                 *mapping,
+                                                 rigid_bodies,
+                                                 now.contact);
     contact->surfaces().set_fixed(boundary_conditions->homogeneous_constraints());
 
     const BlockLayout &layout = contact->surfaces().layout();

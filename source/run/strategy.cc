@@ -3,6 +3,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
+
 // What is tried where something fails, outermost first. Each row has a case that fails without it; the numbers are in
 // contrib/doc/architecture.md.
 //
@@ -31,6 +33,7 @@ namespace Nodus
   std::vector<Strategy::Attempt> Strategy::ladder(const bool on_new_mesh) const
   {
     using Mode                      = LoopParameters::Mode;
+    using Kind                      = SolverFailure::Kind;
     const Parameters       &p       = model_.parameters;
     const ContactInterface &contact = *model_.contact;
     const MergedLoops       asked   = {p.geometry_loop.mode == Mode::newton,
@@ -39,25 +42,31 @@ namespace Nodus
     const MergedLoops       inner   = {false, asked.threshold, asked.status};
     const MergedLoops       coupled = {false, true, false}, none;
     const bool              slides  = contact.slides() && !on_new_mesh; // there friction has grown already
-    struct Rung
+    const bool              frozen  = p.threshold_loop.mode != Mode::newton && contact.threshold_follows_pressure();
+
+    const std::vector<Kind> any = {Kind::unspecified,
+                                   Kind::newton_limit,
+                                   Kind::newton_stalled,
+                                   Kind::not_finite,
+                                   Kind::inverted_cell,
+                                   Kind::free_body,
+                                   Kind::over_constraint,
+                                   Kind::linear_solver,
+                                   Kind::status_cycle,
+                                   Kind::geometry_cycle,
+                                   Kind::loop_limit};
+    // name, what is merged, whether friction grows, what it counts as, what it answers
+    std::vector<Attempt> attempts = {{"the loops as they are asked for", asked, false, {}, {}}};
+    const auto           add      = [&](const bool fits, const Attempt &attempt)
     {
-      bool    answers;
-      Attempt attempt;
+      if (fits && model_.parameters.strategy.uses(*attempt.remedy))
+        attempts.push_back(attempt);
     };
-    const Rung rungs[] = {
-        // answers                                        name                                merged   friction grows
-        {true, {"the loops as they are asked for", asked, false}},
-        {asked.geometry && inner.any(), {"a geometry loop", inner, false}},
-        {asked.status && slides, {"a geometry loop and growing friction", inner, true}},
-        {asked.status && asked.threshold, {"geometry and status loops", coupled, false}},
-        {asked.any(), {"three loops", none, false}},
-        {p.threshold_loop.mode != Mode::newton && contact.threshold_follows_pressure(),
-         {"the coupled threshold", coupled, false}},
-    };
-    std::vector<Attempt> attempts;
-    for (const Rung &rung : rungs)
-      if (rung.answers)
-        attempts.push_back(rung.attempt);
+    add(asked.geometry && inner.any(), {"a geometry loop", inner, false, Remedy::geometry_loop, any});
+    add(asked.status && slides, {"a geometry loop and growing friction", inner, true, Remedy::growing_friction, any});
+    add(asked.status && asked.threshold, {"geometry and status loops", coupled, false, Remedy::status_loops, any});
+    add(asked.any(), {"three loops", none, false, Remedy::three_loops, any});
+    add(frozen, {"the coupled threshold", coupled, false, Remedy::coupled_threshold, any});
     return attempts;
   }
 
@@ -65,7 +74,7 @@ namespace Nodus
   {
     journal_.counts                     = IterationCounts();
     const std::vector<Attempt> attempts = ladder(equilibrium_.increment().on_new_mesh());
-    for (auto attempt = attempts.begin();; ++attempt)
+    for (auto attempt = attempts.begin();;)
       try
       {
         run(*attempt);
@@ -73,14 +82,21 @@ namespace Nodus
       }
       catch (const SolverFailure &failure)
       {
+        const auto next = std::find_if(
+            attempt + 1,
+            attempts.end(),
+            [&](const Attempt &other)
+            { return std::find(other.answers.begin(), other.answers.end(), failure.kind()) != other.answers.end(); });
         // without contact all attempts have the same system
-        if (attempt + 1 == attempts.end() || (begins_singular() && model_.contact->n_closed() == 0))
+        if (next == attempts.end() || (begins_singular() && model_.contact->n_closed() == 0))
           throw;
         journal_.console.remark((attempt->merged.any() ? "merged iteration given up: " : "three loops given up: ") +
-                                std::string(failure.what()) + "; again with " + attempt[1].name);
+                                std::string(failure.what()) + "; again with " + next->name);
         journal_.diagnosis.end_attempt(failure.what());
         model_.roll_back(states_);
         ++journal_.counts.fallbacks;
+        journal_.count(*next->remedy);
+        attempt = next;
       }
   }
 

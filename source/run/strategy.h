@@ -3,6 +3,7 @@
 
 #include "run/increment_loops.h"
 
+#include <optional>
 #include <vector>
 
 namespace Nodus
@@ -21,8 +22,11 @@ namespace Nodus
       const char *name;
       MergedLoops merged;
       bool        friction_grows; ///< it starts with the friction continuation
+      /// What it is counted as, and the failures of attempts before it after which it is tried; none for the first one.
+      std::optional<Remedy>            remedy;
+      std::vector<SolverFailure::Kind> answers;
     };
-    /// Those that answer the case at hand, in their order.
+    /// Those that are of use in the case at hand, in their order.
     std::vector<Attempt> ladder(bool on_new_mesh) const;
 
     /// Solves the increment that Equilibrium::begin_increment() was given. @throws SolverFailure of the last attempt,

@@ -1,28 +1,45 @@
 #ifndef nodus_solve_anderson_mixing_h
 #define nodus_solve_anderson_mixing_h
 
-#include <nodus/base/types.h>
-
-#include <deal.II/lac/trilinos_vector.h>
+#include <mpi.h>
 
 #include <deque>
-#include <utility>
+#include <vector>
 
 namespace Nodus
 {
-  /// Anderson's mixing for a fixed point x = g(x) of displacements (eq. L4). With the last steps s_i and the changes
-  /// y_i of the correction d = g(x) - x that they brought about, the next step is d - sum_i gamma_i (s_i + y_i) with
-  /// the gamma that minimise |d - sum_i gamma_i y_i|: the secant method where errors have one direction.
+  /// Anderson's mixing for a fixed point x = g(x) (eq. L4), each rank with its part of x. With the last changes dg_i of
+  /// the image and df_i of the error f = g(x) - x from pass to pass, the next x is g - sum_i gamma_i dg_i with the
+  /// gamma that minimise |f - sum_i gamma_i df_i|. A map that contracts, or grows, by one factor in every direction is
+  /// solved in one mixed step, one with n factors in n.
   class AndersonMixing
   {
   public:
-    /// The step from here, where the correction is @p correction: that itself, or mixed with those before if @p mix.
-    /// The next call is for the place where it leads. Collective.
-    const Vector &next(const Vector &correction, bool mix);
+    explicit AndersonMixing(MPI_Comm communicator)
+        : communicator_(communicator)
+    {
+    }
+
+    /// Takes a pass in, @p value x and its @p image g(x). Collective.
+    void add(const std::vector<double> &value, const std::vector<double> &image);
+    /// |f| of the last pass over that of the one before, 0 after the first: < 1 where the iteration contracts.
+    double contraction() const
+    {
+      return contraction_;
+    }
+    /// The next x by all passes that are kept; g(x) after a single one. Collective.
+    std::vector<double> mixed() const;
 
   private:
-    Vector                                step_, correction_;
-    std::deque<std::pair<Vector, Vector>> pairs_; ///< steps and changes of the correction, the oldest first
+    struct Change
+    {
+      std::vector<double> image, error; ///< dg, df
+    };
+
+    MPI_Comm            communicator_;
+    std::deque<Change>  changes_; ///< the oldest first
+    std::vector<double> image_, error_;
+    double              contraction_ = 0., norm_ = -1.; ///< norm_ < 0: there is no pass yet
   };
 } // namespace Nodus
 

@@ -11,8 +11,6 @@ namespace Nodus
 {
   namespace
   {
-    constexpr unsigned int maximum_halvings = 5;
-
     constexpr double forcing_factor = 0.9;
 
     /// Forcing terms (eq. N6): choice 2 of Eisenstat & Walker (1996). @p residual and @p before in units of the
@@ -34,9 +32,10 @@ namespace Nodus
     }
   } // namespace
 
-  Newton::Newton(const NewtonParameters &parameters, const unsigned int patience)
+  Newton::Newton(const NewtonParameters &parameters, const unsigned int patience, const unsigned int halvings)
       : parameters_(parameters)
       , patience_(patience)
+      , halvings_(halvings)
   {
   }
 
@@ -54,8 +53,8 @@ namespace Nodus
 
   Newton::Report Newton::solve(NewtonProblem &problem, const Log &log) const
   {
-    Report               report;
-    BlockVector          correction;
+    Report      report;
+    BlockVector correction;
     problem.evaluate(false);
     NewtonProblem::Norms norms = problem.accept(0);
     log(0, norms, 0);
@@ -97,15 +96,14 @@ namespace Nodus
     return report;
   }
 
-  void
-  Newton::take_step(NewtonProblem &problem, const BlockVector &correction, const NewtonProblem::Norms &norms) const
+  void Newton::take_step(NewtonProblem &problem, const BlockVector &correction, const NewtonProblem::Norms &norms) const
   {
     // The first correction moves the prescribed displacements: its force residual says nothing about progress.
     const bool search = parameters_.line_search && norms.prescribed <= parameters_.contact_tolerance;
     double     step   = 1.;
     for (unsigned int halving = 0;; ++halving)
     {
-      const bool last = halving == maximum_halvings;
+      const bool last = halving == halvings_;
       problem.move(step, correction);
       try
       {

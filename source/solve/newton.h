@@ -41,8 +41,8 @@ namespace Nodus
   {
   public:
     /// @p patience: iterations without progress after which it gives up, 0: never. Progress is a smaller residual or
-    /// fewer changes than in all iterations before; the start does not count.
-    explicit Newton(const NewtonParameters &parameters, unsigned int patience = 0);
+    /// fewer changes than in all iterations before; the start does not count. @p halvings of a step.
+    explicit Newton(const NewtonParameters &parameters, unsigned int patience = 0, unsigned int halvings = 5);
 
     struct Report
     {
@@ -53,7 +53,7 @@ namespace Nodus
 
     /// Solves from the current iterate; no correction when it already satisfies the tolerances without changes.
     /// Corrections are as exact as the next iterate can use: forcing terms of Eisenstat & Walker (1996), choice 2.
-    /// A step into states that do not exist (det F <= 0) is halved, at most five times; with line search, so is one
+    /// A step into states that do not exist (det F <= 0) is halved, a few times at most; with line search, so is one
     /// that increases the force residual at the choices that the step was computed with. Every other failure goes up
     /// at once. @throws SolverFailure with the last norms.
     Report solve(NewtonProblem &problem, const Log &log) const;
@@ -67,7 +67,7 @@ namespace Nodus
     double residual(const NewtonProblem::Norms &norms) const;
 
     NewtonParameters parameters_;
-    unsigned int     patience_;
+    unsigned int     patience_, halvings_;
   };
 } // namespace Nodus
 

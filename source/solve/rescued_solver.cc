@@ -9,11 +9,13 @@ namespace Nodus
   } // namespace
 
   RescuedSolver::RescuedSolver(const LinearSolverParameters                   &parameters,
+                               const bool                                      rescue,
                                const BlockLayout                              &layout,
                                const std::vector<Point>                       &node_positions,
                                Profile                                        &profile,
                                const std::function<void(const std::string &)> &remark)
       : type_(parameters.type)
+      , rescue_(rescue)
       , layout_(layout)
       , remark_(remark)
       , asked_(make_linear_solver(parameters, layout, node_positions))
@@ -34,7 +36,7 @@ namespace Nodus
       }
       catch (const SolverFailure &failure)
       {
-        if (type_ == LinearSolverParameters::Type::direct || layout_.n_u > largest_direct)
+        if (!rescue_ || type_ == LinearSolverParameters::Type::direct || layout_.n_u > largest_direct)
           throw;
         remark_(std::string(failure.what()) +
                 "; this correction comes from the direct solver, and so do those after it in this increment");

@@ -14,8 +14,10 @@ namespace Nodus
   class RescuedSolver : public LinearSolver
   {
   public:
-    /// @p parameters whose type is not automatic; @p remark says what happened. The layout outlives the solver.
+    /// @p parameters whose type is not automatic; @p rescue: whether there is a direct solver to fall back on; @p
+    /// remark says what happened. The layout outlives the solver.
     RescuedSolver(const LinearSolverParameters                   &parameters,
+                  bool                                            rescue,
                   const BlockLayout                              &layout,
                   const std::vector<Point>                       &node_positions,
                   Profile                                        &profile,
@@ -38,6 +40,7 @@ namespace Nodus
 
   private:
     LinearSolverParameters::Type             type_;
+    bool                                     rescue_;
     const BlockLayout                       &layout_;
     std::function<void(const std::string &)> remark_;
     std::unique_ptr<LinearSolver>            asked_, direct_; ///< direct_: once the other has failed

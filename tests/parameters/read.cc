@@ -192,7 +192,10 @@ namespace
     print("tolerance", parameters.linear_solver.tolerance);
     print("maximum iterations", parameters.linear_solver.maximum_iterations);
     print("augmentation factor", parameters.linear_solver.augmentation_factor);
-    print("\ninterval ends", parameters.load_stepping.interval_ends);
+    print("\nwithout", parameters.strategy.without);
+    print("uses growing friction", parameters.strategy.uses(Remedy::growing_friction));
+    print("uses three loops", parameters.strategy.uses(Remedy::three_loops));
+    print("interval ends", parameters.load_stepping.interval_ends);
     print("increments", parameters.load_stepping.increments);
     print("cut back", parameters.load_stepping.cut_back);
     print("minimum increment", parameters.load_stepping.minimum_increment);

@@ -1,6 +1,7 @@
 #ifndef nodus_contact_contact_fields_h
 #define nodus_contact_contact_fields_h
 
+#include <nodus/base/remedy.h>
 #include <nodus/base/types.h>
 
 #include <string>
@@ -71,7 +72,9 @@ namespace Nodus
   struct IterationCounts
   {
     unsigned int geometry = 0, threshold = 0, status = 0, newton = 0, krylov = 0;
-    unsigned int fallbacks = 0; ///< merged iterations that stalled and were started again with loops
+    unsigned int cut_backs = 0;       ///< times that the increment was halved since the last one converged
+    unsigned int fallbacks = 0;       ///< attempts that were given up for another one, and laws that were regularised
+    PerRemedy<unsigned int> remedies; ///< how often each was used, in attempts that were given up, too
   };
 
   /// A rigid body that force and moment drive, since the start.

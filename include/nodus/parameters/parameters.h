@@ -1,6 +1,7 @@
 #ifndef nodus_parameters_parameters_h
 #define nodus_parameters_parameters_h
 
+#include <nodus/base/remedy.h>
 #include <nodus/base/types.h>
 
 #include <map>
@@ -296,6 +297,14 @@ namespace Nodus
     double       augmentation_factor = 2.;    ///< block: gamma, in units of the diagonal of the stiffness
   };
 
+  /// What is tried where something fails.
+  struct StrategyParameters
+  {
+    std::vector<std::string> without; ///< remedy_names that are not used
+
+    bool uses(Remedy remedy) const;
+  };
+
   struct LoadSteppingParameters
   {
     std::vector<double>       interval_ends = {1.}; ///< increasing times; the first interval starts at 0
@@ -350,6 +359,7 @@ namespace Nodus
     LoopParameters                           status_loop    = {30, 0., LoopParameters::Mode::newton};
     NewtonParameters                         newton;
     LinearSolverParameters                   linear_solver = {LinearSolverParameters::Type::automatic};
+    StrategyParameters                       strategy;
     LoadSteppingParameters                   load_stepping;
     AdaptivityParameters                     adaptivity;
     OutputParameters                         output;

@@ -1,0 +1,69 @@
+#ifndef nodus_base_remedy_h
+#define nodus_base_remedy_h
+
+#include <array>
+
+namespace Nodus
+{
+  /// What is tried where something fails. First the attempts at an increment after the first one, in the order of the
+  /// ladder (run/strategy.cc), then what helps inside an attempt. Each has a name for the parameter file, a column of
+  /// contact.csv, and a row in the table of contrib/doc/architecture.md with a case that fails without it.
+  enum class Remedy : unsigned int
+  {
+    geometry_loop,
+    growing_friction,
+    status_loops,
+    three_loops,
+    coupled_threshold,
+    smaller_friction_steps,
+    mixed_geometry,
+    mixed_thresholds,
+    regularised_law,
+    one_status_at_a_time,
+    frozen_statuses,
+    shorter_step,
+    direct_solver
+  };
+
+  constexpr std::array<const char *, 13> remedy_names = {{"geometry loop",
+                                                          "growing friction",
+                                                          "status loops",
+                                                          "three loops",
+                                                          "coupled threshold",
+                                                          "smaller friction steps",
+                                                          "mixed geometry",
+                                                          "mixed thresholds",
+                                                          "regularised law",
+                                                          "one status at a time",
+                                                          "frozen statuses",
+                                                          "shorter step",
+                                                          "direct solver"}};
+
+  /// A value for each remedy: how often it was used, whether it may be.
+  template <typename T>
+  class PerRemedy
+  {
+  public:
+    T &operator[](const Remedy remedy)
+    {
+      return values_[static_cast<unsigned int>(remedy)];
+    }
+    const T &operator[](const Remedy remedy) const
+    {
+      return values_[static_cast<unsigned int>(remedy)];
+    }
+    auto begin() const
+    {
+      return values_.begin();
+    }
+    auto end() const
+    {
+      return values_.end();
+    }
+
+  private:
+    std::array<T, remedy_names.size()> values_ = {};
+  };
+} // namespace Nodus
+
+#endif
