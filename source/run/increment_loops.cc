@@ -152,8 +152,16 @@ namespace Nodus
     const std::vector<double> pressure = contact.pressure();
     const Status::Change      change   = status.threshold_change(pressure);
     const std::string         worst    = contact.locus(change.site);
-    std::vector<double>       next     = status.thresholds_at(pressure);
-    mixing.add(status.thresholds(), next);
+    const auto                owned    = [&](const std::vector<double> &values)
+    {
+      std::vector<double> result;
+      for (unsigned int s = 0; s < values.size(); ++s)
+        if (contact.surfaces().is_owned(s))
+          result.push_back(values[s]);
+      return result;
+    };
+    std::vector<double> next = status.thresholds_at(pressure);
+    mixing.add(owned(status.thresholds()), owned(next));
     std::ostringstream text;
     text << "threshold changes by " << change.value << ", most at " << worst;
     if (mixing.contraction() > 0.)
@@ -164,14 +172,18 @@ namespace Nodus
       return true;
     if (mixing.contraction() > threshold_contraction && uses(Remedy::mixed_thresholds))
     {
-      next = mixing.mixed();
       journal_.count(Remedy::mixed_thresholds);
+      const std::vector<double> mixed = mixing.mixed();
+      auto                      value = mixed.begin();
+      for (unsigned int s = 0; s < next.size(); ++s)
+        if (contact.surfaces().is_owned(s))
+          next[s] = *value++;
     }
     status.freeze(std::move(next));
     return false;
   }
 
-  /// Eqs. L1 and L4.
+  /// Eqs. L1 and L3.
   bool IncrementLoops::geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing, const bool once)
   {
     ++journal_.counts.geometry;

@@ -8,7 +8,7 @@
 
 namespace Nodus
 {
-  /// Anderson's mixing for a fixed point x = g(x) (eq. L4), each rank with its part of x. With the last changes dg_i of
+  /// Anderson's mixing for a fixed point x = g(x) (eq. L3), each rank with its part of x. With the last changes dg_i of
   /// the image and df_i of the error f = g(x) - x from pass to pass, the next x is g - sum_i gamma_i dg_i with the
   /// gamma that minimise |f - sum_i gamma_i df_i|. A map that contracts, or grows, by one factor in every direction is
   /// solved in one mixed step, one with n factors in n.
