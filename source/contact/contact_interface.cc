@@ -395,7 +395,7 @@ namespace Nodus
     return contact_resultants(pairs_, surfaces_, pairing_, jump_, weights_, status_, state_, residual_);
   }
 
-  void ContactInterface::hold(UnconstrainedModes &motions, const bool as_closed) const
+  void ContactInterface::hold(FreeMotions &motions, const bool as_closed) const
   {
     motions.hold_contact(surfaces_, pairing_, jump_, status_, state_, residual_, as_closed);
   }

@@ -4,13 +4,13 @@
 #include "contact/averaged_jump.h"
 #include "contact/contact_assembler.h"
 #include "contact/contact_geometry.h"
+#include "contact/free_motions.h"
 #include "contact/interface_state.h"
 #include "contact/jump_operator.h"
 #include "contact/pairing.h"
 #include "contact/status.h"
 #include "contact/surface.h"
 #include "contact/surface_weights.h"
-#include "contact/unconstrained_modes.h"
 #include "rigid/rigid_bodies.h"
 #include <nodus/contact/contact_fields.h>
 
@@ -99,8 +99,8 @@ namespace Nodus
     /// What the user sees, of this rank's part of the surfaces and on all ranks.
     std::vector<ContactFields>     fields() const;
     std::vector<ContactResultants> resultants() const;
-    /// Motions that contact holds (UnconstrainedModes::hold_contact).
-    void hold(UnconstrainedModes &motions, bool as_closed) const;
+    /// Motions that contact holds (FreeMotions::hold_contact).
+    void hold(FreeMotions &motions, bool as_closed) const;
 
     /// d_n without what is adjusted, and the tangential jump of the increment, at an owned site.
     double                distance(unsigned int site) const;

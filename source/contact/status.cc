@@ -1,5 +1,6 @@
 #include "contact/status.h"
 #include "contact/pairing.h"
+#include <nodus/base/remedy.h>
 
 #include <deal.II/base/mpi.h>
 

@@ -1,5 +1,6 @@
 #include "output/tables.h"
 #include "base/complete_file.h"
+#include <nodus/base/remedy.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>

@@ -2,6 +2,7 @@
 #include "parameters/parameter_file.h"
 #include "parameters/parameter_keys.h"
 #include "parameters/parameter_reference.h"
+#include <nodus/base/remedy.h>
 #include <nodus/parameters/parameters.h>
 
 #include <deal.II/base/utilities.h>

@@ -1,8 +1,8 @@
 #include "run/equilibrium.h"
-#include "contact/unconstrained_modes.h"
+#include "contact/free_motions.h"
 #include "mesh/sides.h"
 #include "parallel/owned_values.h"
-#include "run/free_motions.h"
+#include "run/unheld_bodies.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>

@@ -1,6 +1,6 @@
 #include "run/failure_report.h"
 #include "base/complete_file.h"
-#include "run/free_motions.h"
+#include "run/unheld_bodies.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>

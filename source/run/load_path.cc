@@ -1,6 +1,6 @@
 #include "run/load_path.h"
 #include "mesh/sides.h"
-#include "run/free_motions.h"
+#include "run/unheld_bodies.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -139,23 +139,29 @@ namespace Nodus
     Status    &status = model.contact->status();
     const auto before = parts_.results.resultants();
     parts_.equilibrium.begin_increment(parts_.path.standstill());
-    for (const bool hold : {true, false})
+    const auto solved = [&](const bool hold, const std::string &otherwise)
+    {
       try
       {
         status.hold_friction(hold);
         parts_.strategy.solve_increment();
-        break;
+        return true;
       }
       catch (const SolverFailure &failure)
       {
         parts_.journal.diagnosis.end_attempt(failure.what());
         model.roll_back(parts_.states);
-        parts_.journal.console.remark(std::string("no equilibrium on the new mesh: ") + failure.what() +
-                                      (!hold ? "; the next increment goes on from the state as it was taken over"
-                                             : "; again with slip that may turn"));
-        if (!hold)
-          return;
+        parts_.journal.console.remark(std::string("no equilibrium on the new mesh: ") + failure.what() + otherwise);
+        return false;
       }
+    };
+    const std::string as_it_was = "; the next increment goes on from the state as it was taken over";
+    if (!solved(true, "; again with slip that may turn"))
+    {
+      parts_.journal.count(Remedy::free_slip);
+      if (!model.parameters.strategy.uses(Remedy::free_slip) || !solved(false, as_it_was))
+        return status.hold_friction(false);
+    }
     // the forces that were taken over belong to the mesh before: they do no work
     start.applied = parts_.equilibrium.applied_forces();
     for (unsigned int s = 0; s < start.contact.force.size(); ++s)

@@ -1,6 +1,6 @@
 #include "run/validation.h"
 #include "mesh/sides.h"
-#include "run/free_motions.h"
+#include "run/unheld_bodies.h"
 #include "solve/linear_solver.h"
 
 #include <deal.II/base/mpi.h>

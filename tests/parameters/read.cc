@@ -2,6 +2,7 @@
 // says the same, and every key has a unit.
 
 #include "parameters/parameter_file.h"
+#include <nodus/base/remedy.h>
 #include <nodus/parameters/parameters.h>
 
 #include <fstream>

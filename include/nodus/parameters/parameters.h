@@ -1,7 +1,6 @@
 #ifndef nodus_parameters_parameters_h
 #define nodus_parameters_parameters_h
 
-#include <nodus/base/remedy.h>
 #include <nodus/base/types.h>
 
 #include <map>
@@ -17,6 +16,7 @@ namespace Nodus
 {
   class ParameterFile;
   struct DeclaredKey;
+  enum class Remedy : unsigned int;
 
   /// Every struct below is one subsection of the parameter file; the text of a key is the name of the
   /// member with blanks, "Young's modulus" and the like excepted. Keys are bound to members and checked

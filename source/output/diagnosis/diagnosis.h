@@ -66,7 +66,7 @@ namespace Nodus
 
     bool may_shrink = true; ///< smaller increments are worth a try
 
-    std::vector<std::string> free_motions; ///< rigid motions that nothing resists (contact/unconstrained_modes.h)
+    std::vector<std::string> free_motions; ///< rigid motions that nothing resists (contact/free_motions.h)
     std::vector<std::string> left_free;    ///< what would be left of them if all sites with a master point were closed
 
     /// A soft spring against the free motions of a body.

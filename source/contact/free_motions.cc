@@ -1,4 +1,4 @@
-#include "contact/unconstrained_modes.h"
+#include "contact/free_motions.h"
 #include "mesh/region.h"
 #include "mesh/sides.h"
 
@@ -54,12 +54,12 @@ namespace Nodus
     }
   } // namespace
 
-  UnconstrainedModes::UnconstrainedModes(const Bodies                  &bodies,
-                                         const dealii::DoFHandler<dim> &dof_handler,
-                                         const dealii::Mapping<dim>    &mapping,
-                                         const RigidBodies             &rigid_bodies,
-                                         const OwnedNodes              &nodes,
-                                         const Vector                  &u)
+  FreeMotions::FreeMotions(const Bodies                  &bodies,
+                           const dealii::DoFHandler<dim> &dof_handler,
+                           const dealii::Mapping<dim>    &mapping,
+                           const RigidBodies             &rigid_bodies,
+                           const OwnedNodes              &nodes,
+                           const Vector                  &u)
       : bodies_(bodies)
       , dof_handler_(dof_handler)
       , mapping_(mapping)
@@ -82,7 +82,7 @@ namespace Nodus
       centre_[rigid_bodies.body(i)] = rigid_bodies.centre(i);
   }
 
-  void UnconstrainedModes::take(const unsigned int body, const Point &x, const Vector3 &direction)
+  void FreeMotions::take(const unsigned int body, const Point &x, const Vector3 &direction)
   {
     const Vector3 moment = dealii::cross_product_3d(Vector3(x - centre_[body]), direction) / size_[body];
     for (unsigned int c = 0; c < dim; ++c)
@@ -92,13 +92,13 @@ namespace Nodus
     }
   }
 
-  void UnconstrainedModes::hold()
+  void FreeMotions::hold()
   {
     held_.noalias() += row_ * row_.transpose();
     row_.setZero();
   }
 
-  void UnconstrainedModes::hold(const DoFIndex dof)
+  void FreeMotions::hold(const DoFIndex dof)
   {
     const auto i = dof_handler_.locally_owned_dofs().index_within_set(dof);
     Vector3    direction;
@@ -107,7 +107,7 @@ namespace Nodus
     hold();
   }
 
-  void UnconstrainedModes::hold_prescribed(const dealii::AffineConstraints<double> &constraints)
+  void FreeMotions::hold_prescribed(const dealii::AffineConstraints<double> &constraints)
   {
     const bool        first_rank = dealii::Utilities::MPI::this_mpi_process(dof_handler_.get_communicator()) == 0;
     std::vector<bool> driven(bodies_.size(), false);
@@ -128,7 +128,7 @@ namespace Nodus
         hold(dof);
   }
 
-  void UnconstrainedModes::hold_springs(const std::vector<BoundaryConditionParameters> &conditions, const double time)
+  void FreeMotions::hold_springs(const std::vector<BoundaryConditionParameters> &conditions, const double time)
   {
     const auto           &fe     = dof_handler_.get_fe();
     const auto           &scalar = fe.base_element(0);
@@ -153,13 +153,13 @@ namespace Nodus
     }
   }
 
-  void UnconstrainedModes::hold_contact(const ContactSurfaces &surfaces,
-                                        const Pairing         &pairing,
-                                        const JumpOperator    &jump,
-                                        const Status          &status,
-                                        const ContactState    &state,
-                                        const ContactResidual &residual,
-                                        const bool             as_closed)
+  void FreeMotions::hold_contact(const ContactSurfaces &surfaces,
+                                 const Pairing         &pairing,
+                                 const JumpOperator    &jump,
+                                 const Status          &status,
+                                 const ContactState    &state,
+                                 const ContactResidual &residual,
+                                 const bool             as_closed)
   {
     const dealii::IndexSet &owned = dof_handler_.locally_owned_dofs();
     Vector                  body(owned, surfaces.layout().communicator);
@@ -191,7 +191,7 @@ namespace Nodus
     }
   }
 
-  UnconstrainedModes::Motion UnconstrainedModes::describe(const Eigen::VectorXd &motion) const
+  FreeMotions::Motion FreeMotions::describe(const Eigen::VectorXd &motion) const
   {
     Motion result;
     for (unsigned int b = 0; b < bodies_.size(); ++b)
@@ -217,7 +217,7 @@ namespace Nodus
     return result;
   }
 
-  std::vector<UnconstrainedModes::Motion> UnconstrainedModes::free()
+  std::vector<FreeMotions::Motion> FreeMotions::free()
   {
     std::vector<double> sum(held_.data(), held_.data() + held_.size());
     dealii::Utilities::MPI::sum(sum, dof_handler_.get_communicator(), sum);

@@ -1,5 +1,5 @@
-#ifndef nodus_contact_unconstrained_modes_h
-#define nodus_contact_unconstrained_modes_h
+#ifndef nodus_contact_free_motions_h
+#define nodus_contact_free_motions_h
 
 #include "contact/contact_assembler.h"
 #include "mesh/bodies.h"
@@ -28,16 +28,16 @@ namespace Nodus
 
   /// Finds the rigid motions of the bodies, alone or together, that nothing resists (eq. U1): the null vectors of the
   /// sum of the squares of all motions that are held. Bodies count as connected.
-  class UnconstrainedModes
+  class FreeMotions
   {
   public:
     /// At displacement @p u (fully distributed). The references outlive the object.
-    UnconstrainedModes(const Bodies                  &bodies,
-                       const dealii::DoFHandler<dim> &dof_handler,
-                       const dealii::Mapping<dim>    &mapping,
-                       const RigidBodies             &rigid_bodies,
-                       const OwnedNodes              &nodes,
-                       const Vector                  &u);
+    FreeMotions(const Bodies                  &bodies,
+                const dealii::DoFHandler<dim> &dof_handler,
+                const dealii::Mapping<dim>    &mapping,
+                const RigidBodies             &rigid_bodies,
+                const OwnedNodes              &nodes,
+                const Vector                  &u);
 
     /// By prescribed displacements; driven rigid bodies by the components that are not free.
     void hold_prescribed(const dealii::AffineConstraints<double> &constraints);

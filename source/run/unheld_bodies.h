@@ -1,7 +1,7 @@
-#ifndef nodus_run_free_motions_h
-#define nodus_run_free_motions_h
+#ifndef nodus_run_unheld_bodies_h
+#define nodus_run_unheld_bodies_h
 
-#include "contact/unconstrained_modes.h"
+#include "contact/free_motions.h"
 #include "output/diagnosis/diagnosis.h"
 #include "run/load_stepping.h"
 #include "run/model.h"
@@ -14,7 +14,7 @@
 namespace Nodus
 {
   /// Rigid motions that nothing holds at @p state and @p time, or would if all sites with a master point were closed.
-  std::vector<UnconstrainedModes::Motion>
+  std::vector<FreeMotions::Motion>
   free_motions(const Model &model, const State &state, double time, bool as_closed = false);
 
   /// What the user can do about a body that is free in @p increment, @p first of all, for a message that ends in this.

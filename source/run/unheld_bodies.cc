@@ -1,4 +1,4 @@
-#include "run/free_motions.h"
+#include "run/unheld_bodies.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -14,11 +14,11 @@ namespace Nodus
     constexpr double soft = 1e-3;
   } // namespace
 
-  std::vector<UnconstrainedModes::Motion>
+  std::vector<FreeMotions::Motion>
   free_motions(const Model &model, const State &state, const double time, const bool as_closed)
   {
-    const OwnedNodes   nodes(model.dof_handler, *model.mapping);
-    UnconstrainedModes motions(
+    const OwnedNodes nodes(model.dof_handler, *model.mapping);
+    FreeMotions      motions(
         model.bodies, model.dof_handler, *model.mapping, model.rigid_bodies, nodes, state.unknowns.block(0));
     motions.hold_prescribed(model.boundary_conditions->homogeneous_constraints());
     motions.hold_springs(model.parameters.boundary_conditions, time);
