@@ -4,7 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 // What is tried where something fails, outermost first. Each row has a case that fails without it; the numbers are in
-// contrib/doc/architecture.md.
+// theory sections 21 and 22.
 //
 // | level        | what is tried                                | where                                       |
 // |--------------|----------------------------------------------|---------------------------------------------|
