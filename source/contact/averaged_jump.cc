@@ -78,7 +78,8 @@ namespace Nodus
       return inside ? covered / area : 0.;
     }
 
-    /// The same where the master is rigid: its points are found again from those of the slave.
+    /// The same where the master is rigid. The master points are not kept: whoever needs them finds them again from the
+    /// slave points.
     double face_points(const ContactGeometry       &geometry,
                        const unsigned int           pair,
                        const unsigned int           f,

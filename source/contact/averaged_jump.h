@@ -51,12 +51,12 @@ namespace Nodus
       return rows_[slave];
     }
 
-    /// A slave face: its points, of rigid masters without master.
+    /// A slave face with its integration points. On a rigid master their master face is not set.
     struct Face
     {
       unsigned int             pair, face;
       std::vector<MortarPoint> points;
-      SegmentTrace             trace; ///< of segments
+      SegmentTrace             trace; ///< of segments; empty for a fixed rule
       double                   coverage = 0.;
 
       /// Part of the dual functions in psi, the rest being hats, and how it changes with the coverage.
@@ -69,7 +69,7 @@ namespace Nodus
                             const dealii::Quadrature<2> &rule,
                             Face                        &face);
 
-    /// Those of this rank.
+    /// The slave faces of this rank.
     const std::vector<Face> &faces() const
     {
       return faces_;

@@ -53,10 +53,9 @@ namespace Nodus
 
     /// Fills the contact couplings, the multiplier scale, the border and the multiplier blocks of the right-hand side
     /// of @p system; subtracts the contact forces from its displacement block (free components only). Collective.
-    /// @p linearise_threshold: the thresholds follow the current pressure (site_pressure, eq. T1-T4); the tangent gets
-    /// the derivative of the friction tractions with respect to lambda and is not symmetric any more. That of the
-    /// factors which scale the friction law rows is left out where a row has one factor (one node a point), and
-    /// sticking nodes have none there, because the caller keeps their mu lambda Lambda when the threshold moves.
+    /// @p linearise_threshold: the thresholds follow the current pressure (site_pressure, eq. T1-T4), and the tangent
+    /// gets their derivative with respect to lambda in friction tractions and friction laws: it is not symmetric any
+    /// more. What is left out of it where a point has one node stands at LawSum::by_threshold.
     ContactResidual assemble(const ContactState &state, LinearSystem &system, bool linearise_threshold = false) const;
 
     /// Adds the contact force residual G^T R_jump (eq. N1) to all components, prescribed ones too. Collective

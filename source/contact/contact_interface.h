@@ -78,17 +78,17 @@ namespace Nodus
     /// The laws have just been regularised: multipliers of lumped weights become the nodal means that those of
     /// consistent weights had.
     void pass_to_regularised_law(BlockVector &unknowns, const Vector &start);
-    /// Of the sites that were frozen in this loop.
+    /// By how much the sites that were frozen in this loop violate their statuses.
     Status::Violation frozen_violation() const;
 
-    /// What the next correction must add at prescribed components, zero elsewhere; zero without it.
+    /// Sets what the next correction must add at prescribed components, zero elsewhere; to zero without an argument.
     void set_prescribed(const Vector &prescribed);
     void set_prescribed();
-    /// Contact terms of @p system and the residual (ContactAssembler::assemble).
+    /// Writes the contact terms of @p system and keeps the residual (ContactAssembler::assemble).
     void assemble(LinearSystem &system, bool linearise_threshold = false);
-    /// What the tangent gains where the geometry follows the iterate, after assemble().
+    /// Adds what the tangent gains where the geometry follows the iterate (GeometryTangent). assemble() comes first.
     void add_geometry_tangent(LinearSystem &system) const;
-    /// Nodal contact forces, at prescribed components too.
+    /// Adds the nodal contact forces, at prescribed components too.
     void add_forces(Vector &force) const;
     /// Largest relative violation of the contact and friction laws (eq. N4): lengths over @p length.
     double norm(double length) const;

@@ -65,7 +65,7 @@ namespace Nodus
     bool in_the_mean = false;
     /// The friction multipliers stay as they are; slip keeps the direction that they have (theory section 14).
     bool held = false;
-    /// Fill LawSum::by_threshold.
+    /// Whether add_contact_law() fills LawSum::by_threshold.
     bool linearise_threshold = false;
   };
 
@@ -93,16 +93,16 @@ namespace Nodus
     alignas(64) std::array<double, max_unknowns> residual;
     /// Its derivative with respect to the unknowns, n_unknowns x n_unknowns, column by column.
     alignas(64) std::array<double, max_unknowns * max_unknowns> matrix;
-    /// Of the point that came last, where it asks for it: derivative of its residual with respect to its threshold,
-    /// with h_tau as 1/threshold (eq. T3, T4). Where the point has one node, its friction law rows have one factor, of
-    /// which the derivative is left out; and friction that sticks has none, because its traction mu lambda_s Lambda is
-    /// kept when the threshold moves.
+    /// The derivative of the residual of the last point that asked for it with respect to its threshold (eq. T3, T4);
+    /// h_tau goes with 1/threshold. Where the point has one node, the threshold is a factor of its whole friction law
+    /// rows, and the derivative of that factor is left out. There friction that sticks has no derivative, because its
+    /// traction mu lambda_s Lambda is kept when the threshold moves.
     alignas(64) std::array<double, max_unknowns> by_threshold;
   };
 
   /// Adds residual and tangent of @p point to @p sum, which has been reset for its numbers of jumps and nodes. The
-  /// statuses, the threshold and the augmentations are constants of the tangent, which is symmetric. The tangent in
-  /// Lambda of a point that is held keeps Lambda instead: its rows have no residual and are regular.
+  /// statuses, the threshold and the augmentations are constants of the tangent, which is symmetric. Where a point is
+  /// held, the rows of Lambda have no residual but a regular block, so that the correction of Lambda is zero.
   void add_contact_law(const LawPoint &point, LawSum &sum);
 
   /// Derivative of the threshold at a point by that of its jump @p a, in as far as the residual depends on it (eq. T1).

@@ -13,7 +13,8 @@ namespace Nodus
   {
     /// Edges that are as parallel as this (sine) have no crossing that follows both: matching faces.
     constexpr double parallel = 1e-6;
-    /// Corners of an overlap that are in a line span triangles without area, which do not count.
+    /// Corners of an overlap that are in a line span triangles without area. Their points have next to no weight; this
+    /// bounds the derivative of its logarithm.
     constexpr double smallest_sine = 1e-10;
 
     using Plane2 = Eigen::Vector2d;
@@ -49,7 +50,7 @@ namespace Nodus
     }
   } // namespace
 
-  /// Of the logarithm of the surface element that areas are measured with.
+  /// Variation of the logarithm of the surface element that areas are measured with (eq. G19).
   template <typename Element, typename Motion>
   Element
   FaceVariation::element_gradient(const FaceShape &shape, const double xi, const double eta, const Motion &motion) const

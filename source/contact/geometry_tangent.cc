@@ -230,7 +230,7 @@ namespace Nodus
     Eigen::RowVectorXd gap  = eigen(n) * rows.middleRows<3>(variation.offset());
     for (unsigned int e = 0; e < variation.nodes().size(); ++e)
       gap += n * state.x[variation.nodes()[e]] * rows.row(e);
-    if (averages(site)) // what is found at fixed geometry has the weights after the balance
+    if (averages(site)) // the tangent at fixed geometry has the weights after the balance: last term of eq. G13
     {
       const AveragedJump::Row &row = averaged_.row(site);
       jump                         = row.offset - row.rigid.x;
@@ -324,7 +324,7 @@ namespace Nodus
     return law;
   }
 
-  /// The laws of ContactAssembler at a point with one node.
+  /// How the contact law (contact_law.cc) of a point with one node follows normal, slip and area (eqs. G14-G16).
   void
   GeometryTangent::add_friction(const unsigned int site, const ContactState &state, const bool follows, Law &law) const
   {
@@ -379,7 +379,7 @@ namespace Nodus
       const double  norm = w.norm();
       K_B                = identity();
       pi                 = w;
-      if (norm >= 1. - 1e-7) // as in ContactAssembler
+      if (norm >= 1. - 1e-7) // as in the contact law (eq. 48)
       {
         pi  = w / norm;
         K_B = unit_derivative(w);

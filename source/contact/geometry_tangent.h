@@ -12,19 +12,18 @@
 
 namespace Nodus
 {
-  /// What the contact terms gain in the tangent when pairing, areas and frames follow the surfaces (eq. G11-G17): with
-  /// the jump
-  /// [[x]] = G x + offset of a site, its normal n, its area m and r, work conjugate to the jump,
+  /// What the contact terms gain in the tangent when pairing, areas and frames follow the surfaces (eq. G11-G17). With
+  /// the jump [[x]] = G x + offset of a site, its normal n, its area m, and r, minus the force on the slave, these are
   ///
   /// - contact forces: delta G^T r and G^T delta r, where r turns with the frame and follows the slip;
   /// - gaps: n . (delta G x + delta offset) + delta n . [[x]];
-  /// - friction laws: delta G of the increment, and the frame.
+  /// - friction laws: delta G times the displacement of the increment, and how the slip follows the frame.
   ///
   /// What is kept is what the caller keeps from one pairing to the next: nodal contact forces m lambda, the tractions
-  /// of sticking sites, the length and direction of Lambda. Rows of multipliers are divided by area and threshold
-  /// before they vary: these are factors of laws that hold in the end.
+  /// of sticking sites, the length and direction of Lambda. The rows of a multiplier law are divided by area and
+  /// threshold before they vary: these are factors of laws that hold in the end.
   ///
-  /// What is left out stands with its sizes in theory section 18: how smoothing shifts points along the surfaces
+  /// Theory section 18 lists what is left out, with its sizes: how smoothing shifts points along the surfaces
   /// (FaceVariation), areas but for the averaged scheme, friction laws of points with several nodes and of integration
   /// points, normals averaged over faces, sites without force.
   class GeometryTangent
@@ -61,8 +60,8 @@ namespace Nodus
 
     /// Derivatives with respect to sources.
     using Motion = std::vector<std::pair<unsigned int, Vector3>>;
-    /// How the local coordinates of the projection of a site follow (eq. G18): of a rigid master, along its principal
-    /// directions.
+    /// How the local coordinates of the projection of a site follow the sources (eq. G2); on a rigid master these are
+    /// lengths along its principal directions (eq. G18).
     std::array<Motion, 2>       projection_motion(unsigned int site) const;
     void                        add_slave_motion(unsigned int site, const Vector3 &dual, Motion &motion) const;
     std::vector<NodeDerivative> normal_derivative(unsigned int site) const;
@@ -88,9 +87,10 @@ namespace Nodus
                 const Law             &law,
                 const SiteVariation   &variation,
                 GeometryCouplings     &couplings) const;
-    /// What the parts of offsets add to gaps.
+    /// Adds how gaps follow the parts of the offsets of smoothed faces (eq. G9).
     void add_parts(unsigned int site, const FaceVariation &face, unsigned int a, GeometryCouplings &couplings) const;
-    /// Variation of the gap beside that at fixed geometry; before the balance of moments, which leaves gaps alone.
+    /// Variation of the gap without that at fixed geometry (eq. G13). It needs the variation of the row before the
+    /// balance of moments, which leaves gaps alone.
     Eigen::RowVectorXd
     gap_variation(unsigned int site, const ContactState &state, const SiteVariation &variation) const;
 
@@ -109,7 +109,7 @@ namespace Nodus
     const Status                                             &status_;
     VariationSources                                          sources_;
     std::vector<std::vector<std::pair<unsigned int, double>>> gap_rows_; ///< per site: slave, d R_lambda / d d_n
-    std::vector<double>                                       weight_;   ///< of sites with a point of their own, or 0
+    std::vector<double>                                       weight_;   ///< per site: of its point with one node, or 0
   };
 } // namespace Nodus
 

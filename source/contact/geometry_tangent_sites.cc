@@ -6,7 +6,7 @@
 
 namespace Nodus
 {
-  /// Of the position of the site, along @p dual.
+  /// Adds @p dual times the motion of the position of the site.
   void GeometryTangent::add_slave_motion(const unsigned int site, const Vector3 &dual, Motion &motion) const
   {
     if (!surfaces_.is_point(site))
@@ -140,7 +140,7 @@ namespace Nodus
       variation.add(variation.offset(), variation.column(source), -dealii::outer_product(offset, value));
   }
 
-  /// Along a principal direction of the rigid surface.
+  /// The slide along a principal direction of a rigid surface (eq. G3).
   void GeometryTangent::add_rigid_slide(const unsigned int site,
                                         const Motion      &motion,
                                         const unsigned int coordinate,

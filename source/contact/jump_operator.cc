@@ -52,10 +52,11 @@ namespace Nodus
       }
     };
 
-    /// Averaged gaps vanish in the mean alone: gaps that are left between the points, on masters that are not flat, put
-    /// the mean master point beside the normal through the slave node, and forces along that would turn the bodies. The
-    /// least change of the master weights, relative to these, that puts it on the normal; the distance along it stays.
-    /// Nodes that come in with a weight of zero so change nothing at once.
+    /// Balances moments (eq. J4). Averaged gaps vanish in the mean alone: gaps that are left between the points, on
+    /// masters that are not flat, put the mean master point beside the normal through the slave node, and forces along
+    /// that would turn the bodies. The master weights are changed by the least amount, relative to themselves, that
+    /// puts it on the normal; the distance along it stays. As changes are relative, a node whose weight grows from zero
+    /// comes in without a jump.
     void balance_moment(const SitePairing &site, const double size, const std::vector<Point> &x, Row &row)
     {
       Vector3 beside, mean;

@@ -60,12 +60,14 @@ namespace Nodus
         result += e->weight * displacement[e->node];
       return result;
     }
-    /// Jump of the displacement of the increment: with what rigid masters add, and from where a site stuck before.
+    /// Jump of the displacement of the increment (eq. K2): with the way of a rigid master and, on a new mesh, what
+    /// set_stuck() adds.
     Vector3 jump_of_increment(const unsigned int site, const std::vector<Vector3> &increment) const
     {
       return jump(site, increment) - rigid_[site].moved + (stuck_.empty() ? Vector3() : stuck_[site]);
     }
-    /// On a new mesh: the jump with which the increment begins, relative to where the site stuck; until the next build.
+    /// On a new mesh: sets the jump with which the increment begins, relative to where the site stuck (eq. X2). It
+    /// lasts until the next build().
     void set_stuck(std::vector<Vector3> jumps)
     {
       stuck_ = std::move(jumps);

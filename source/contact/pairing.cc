@@ -24,8 +24,8 @@ namespace Nodus
     /// The frame around the geometric normal @p direction: tangents are orthogonal to its part in the free directions
     /// and lie in them, so that normal and tangential rows never repeat each other. The normal itself stays as it is:
     /// its held components drop out of the rows, and lambda stays a pressure. found = false when no normal motion is
-    /// left. Orthotropic friction turns the tangents to its axes; where the constraints leave one tangent, the limit
-    /// along that counts.
+    /// left. Orthotropic friction turns the tangents to its axes; where the constraints leave one tangent, friction has
+    /// the limit of that direction.
     void set_frame(const Vector3               &direction,
                    const std::array<bool, dim> &free,
                    const ContactPairParameters &pair,

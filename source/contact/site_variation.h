@@ -11,8 +11,9 @@
 
 namespace Nodus
 {
-  /// How the row of G of a contact site, its area, the jump of positions beside that of the nodes and its normal follow
-  /// the sources of a variation: dense, in the nodes of the row and the sources that it depends on.
+  /// How the row of G of a contact site, its area, its offset (what is added to G x in the jump of positions) and its
+  /// normal follow the sources of a variation: a dense matrix, with rows for the nodes of the row of G and the other
+  /// quantities, and columns for the sources that they depend on.
   ///
   /// To be used in this order: clear(), node() and column() for all that will be met, allocate(), then values.
   class SiteVariation
@@ -26,7 +27,7 @@ namespace Nodus
     void         clear();
     unsigned int node(unsigned int surface_node);
     unsigned int column(unsigned int source);
-    /// Once they are known.
+    /// Places of a node and of a source that have been met.
     unsigned int place_of_node(const unsigned int surface_node) const
     {
       return place_of_node_[surface_node];

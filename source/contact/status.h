@@ -48,7 +48,7 @@ namespace Nodus
   class Status
   {
   public:
-    /// What history is made of, of all local sites.
+    /// What the statuses hand on from one increment to the next, for all local sites.
     struct State
     {
       std::vector<char>                  contact, stick;  ///< S, S_f
@@ -97,7 +97,7 @@ namespace Nodus
       return regularised_ && can_project(surfaces_.pair(site));
     }
     /// While equilibrium is found on a new mesh: motion that is due to the mesh alone has no friction of its own. Sites
-    /// that slip keep the friction direction that they were taken over with, the others stick.
+    /// that slip keep the friction direction that they were taken over with, and are not tested for friction.
     void hold_friction(const bool hold)
     {
       hold_ = hold;
@@ -144,15 +144,16 @@ namespace Nodus
     /// Sites that lost their partner open.
     void inherit(const Pairing &pairing);
 
-    /// Freezes mu lambda_s from the weighted pressure; returns the largest change of a threshold, relative to the
-    /// largest threshold of its pair, and its site. Collective.
     struct Change
     {
       double       value = 0.;
       unsigned int site  = dealii::numbers::invalid_unsigned_int; ///< on the rank that owns it, invalid on others
     };
+    /// The largest change of a threshold mu lambda_s that @p site_pressure would bring, relative to the largest
+    /// threshold of its pair (eq. L2), and its site. Collective.
     Change threshold_change(const std::vector<double> &site_pressure) const;
-    void   freeze_threshold(const std::vector<double> &site_pressure);
+    /// Freezes the thresholds that @p site_pressure leads to. Collective.
+    void freeze_threshold(const std::vector<double> &site_pressure);
     /// mu lambda_s of every local site: as it is frozen, and as it would be with @p site_pressure.
     const std::vector<double> &thresholds() const
     {
@@ -161,7 +162,8 @@ namespace Nodus
     std::vector<double> thresholds_at(const std::vector<double> &site_pressure) const;
     /// Freezes these instead, which need not belong to a pressure; right at owned sites. Collective.
     void freeze(std::vector<double> thresholds);
-    /// A pair has friction at all; friction that depends on the pressure; on position or slip rate.
+    /// Whether some pair has friction at all; friction that depends on the pressure; friction that depends on position
+    /// or slip rate.
     bool has_friction() const
     {
       return has(&FrictionLimit::exists);

@@ -61,7 +61,7 @@ namespace Nodus
     unsigned int solve(BlockVector &correction, double relative_tolerance) override;
     void         move(double factor, const BlockVector &correction) override;
 
-    /// A geometry pass at the state at hand.
+    /// Pairs the surfaces at the state at hand: what a geometry pass begins with.
     void pair();
     /// Tests and changes statuses, and says so. @throws SolverFailure where they cycle.
     struct StatusChanges

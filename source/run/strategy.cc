@@ -6,7 +6,7 @@
 #include <algorithm>
 
 // What is tried where something fails, outermost first. Each row has a case that fails without it; the numbers are in
-// contrib/doc/architecture.md.
+// theory sections 21 and 22.
 //
 // | level        | what is tried                                | where                                       |
 // |--------------|----------------------------------------------|---------------------------------------------|

@@ -13,14 +13,14 @@
 
 namespace Nodus
 {
-  /// Augmented block preconditioner of a SaddlePointOperator (eq. M3): with D = node-diagonal blocks of C, plus 1/gamma
-  /// where the multiplier is coupled to displacements, it applies
+  /// Augmented block preconditioner of a SaddlePointOperator (eq. M3): with D = node-diagonal blocks of C, plus k/gamma
+  /// where the multiplier is coupled to displacements, k being the stiffness that it sees (eq. M2), it applies
   ///
   ///     u = AMG(f + B^T D^-1 g),   AMG: a cycle on K + B^T D^-1 B,
   ///     m = D^-1 (B u - g),
   ///
-  /// the inverse, up to AMG, of the system with D in place of C. gamma is @p augmentation_factor over the stiffness
-  /// that the multiplier sees, hence free of scale; open nodes have D = C and are solved exactly.
+  /// the inverse, up to AMG, of the system with D in place of C. gamma is the augmentation factor, a number without
+  /// unit; open nodes have D = C and are solved exactly.
   class BlockPreconditioner
   {
   public:

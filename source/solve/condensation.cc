@@ -12,7 +12,8 @@ namespace Nodus
   {
     using Matrix3 = Eigen::Matrix3d;
 
-    /// Rows of B that are stiffer than this many times the node are constraints to working precision.
+    /// A row b of B is a constraint, to working precision, where its stiffness b b^T/c exceeds that of the node this
+    /// many times.
     constexpr double constraint_stiffness = 1e10;
   } // namespace
 
@@ -171,7 +172,7 @@ namespace Nodus
     return inverse;
   }
 
-  /// Eq. D2.
+  /// The rows of T at slave nodes (eq. D2). Those of coupled sites are completed by make_cluster().
   void Condensation::make_rows()
   {
     for (const Site &site : sites_)

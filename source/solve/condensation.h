@@ -31,8 +31,8 @@ namespace Nodus
   ///
   /// The three multipliers of a slave node are turned until their compliance C is diagonal. Where it vanishes the row
   /// of B is a constraint b u = g, which gives the displacement of the slave node along b by that of other nodes;
-  /// elsewhere m = (b u - g)/c adds the stiffness b^T b/c. So u = T y + u_g, where y are displacements, at slave nodes
-  /// with constraints in a basis of their own, and
+  /// elsewhere m = (b u - g)/c adds the stiffness b^T b/c. So u = T y + u_g, where y are displacements, but in a basis
+  /// of their own at slave nodes with constraints or stiff rows, whose jumps stand among the y; and
   ///
   ///     T^T A T y = T^T (f + B^T D g - A u_g),   A = K + C_uu + B^T D B,   D = 1/c on rows that are no constraints.
   class Condensation
@@ -68,8 +68,8 @@ namespace Nodus
       Eigen::Vector3d        flexibility_inverse;   ///< 1/c of each combination, 0 for constraints
       bool                   has_spring    = false; ///< a compliant row that is not zero
       unsigned int           n_constraints = 0;     ///< the first directions of the basis
-      unsigned int           n_directions  = 0;     ///< with the stiff ones, which stay unknowns: jumps
-      unsigned int           combination[3];        ///< that gives each direction
+      unsigned int           n_directions  = 0;     ///< those and the stiff rows', whose unknowns are jumps
+      unsigned int           combination[3];        ///< the turned row that gives each direction
       Matrix3                basis;                 ///< columns
       double                 diagonal = 0.;         ///< mean diagonal stiffness of the node
       bool                   coupled  = false;      ///< to constraints of other slave nodes
@@ -93,7 +93,7 @@ namespace Nodus
     Matrix3 constraint_inverse(const Site &site, unsigned int n) const;
 
     void apply_stiffness(double *m) const; ///< m = D m
-    /// D of a site, with C_uu by what it is along the rows of B.
+    /// D of a site, plus C_uu of its node as a stiffness of the rows of B (theory section 27).
     Matrix3 stiffness_along_rows(const Site &site) const;
     /// Rows of B T of a site.
     NodeRow transformed_rows(const Site &site) const;

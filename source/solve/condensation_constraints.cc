@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-// Constraints that see each other's slave nodes, and what multigrid is told of all.
+// Constraints that act on slave nodes of other constraints, and the form of the condensed matrix that multigrid takes.
 
 namespace Nodus
 {

@@ -69,7 +69,7 @@ namespace Nodus
     }
   }
 
-  /// M, and R on the side.
+  /// Returns M and fills R_.
   ConstraintCluster::Matrix ConstraintCluster::assemble()
   {
     std::map<DoFIndex, const Member *> member_of;

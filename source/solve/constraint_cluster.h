@@ -40,8 +40,8 @@ namespace Nodus
     /// -basis M^-1 R, by global node. Entries of M^-1 that are round-off of the largest in their row are left out.
     std::map<DoFIndex, Eigen::Matrix3d> substitution(const Member &member) const;
 
-    /// Solves M y_c = g, or @p transposed M^T y_c = g; in place per site of this rank and constraint, other values are
-    /// left alone. Collective.
+    /// Solves M y_c = g, or with M^T where @p transposed. @p values holds g and takes y_c, by site of this rank and
+    /// constraint; other values are left alone. Collective.
     void solve(std::vector<Eigen::Vector3d> &values, bool transposed) const;
 
   private:

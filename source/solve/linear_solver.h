@@ -51,7 +51,7 @@ namespace Nodus
     }
 
   protected:
-    /// Preconditioner or factorisation: until the returned object dies.
+    /// Times the set-up of a preconditioner or factorisation, until the returned object dies.
     [[nodiscard]] Profile::Scope time_set_up() const
     {
       return Profile::Scope(profile_, Phase::solver_set_up);

@@ -80,8 +80,9 @@ namespace Nodus
   ///     [ B             -C  ] [dm] = [ rhs_m ],   m = (lambda, Lambda), C >= 0 and coupled only
   ///                                               within a slave node unless the weights are `consistent`
   ///
-  /// and symmetric. The variation is what moving geometry and thresholds add, unsymmetric: the derivative of the
-  /// friction tractions and laws with respect to lambda, and that of forces and gaps by normals and projections.
+  /// and symmetric. The variation is what moving thresholds and geometry add, unsymmetric: the derivative of friction
+  /// tractions and laws with respect to lambda, and that of forces, gaps and friction laws with respect to pairing,
+  /// areas and frames.
   ///
   /// Prescribed displacements are eliminated: their rows hold a positive diagonal only and no contact coupling.
   struct LinearSystem

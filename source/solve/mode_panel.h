@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-/// Products of 3x3 blocks with what six modes do at a node, in vector registers; for aggregation.cc.
+/// Products of 3x3 blocks with what six modes do at a node, in vector registers; for the files of multigrid/.
 namespace Nodus::ModePanel
 {
   constexpr unsigned int n_modes = CoarseRow::n_modes;

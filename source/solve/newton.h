@@ -30,8 +30,8 @@ namespace Nodus
     /// The trial that was evaluated last is the iterate from here on: the choices follow it. @p iteration: corrections
     /// so far. Completes the residual. @throws SolverFailure
     virtual Norms accept(unsigned int iteration) = 0;
-    /// Completes the tangent. The correction, its linear residual reduced by @p relative_tolerance at least; returns
-    /// the Krylov iterations.
+    /// Completes the tangent and finds the @p correction, whose linear residual is reduced by @p relative_tolerance at
+    /// least. Returns the Krylov iterations.
     virtual unsigned int solve(BlockVector &correction, double relative_tolerance) = 0;
     /// trial = iterate + factor * correction: nothing is left of the trial before.
     virtual void move(double factor, const BlockVector &correction) = 0;
