@@ -44,29 +44,49 @@ namespace Nodus
     const bool              slides  = contact.slides() && !on_new_mesh; // there friction has grown already
     const bool              frozen  = p.threshold_loop.mode != Mode::newton && contact.threshold_follows_pressure();
 
-    const std::vector<Kind> any = {Kind::unspecified,
-                                   Kind::newton_limit,
-                                   Kind::newton_stalled,
-                                   Kind::not_finite,
-                                   Kind::inverted_cell,
-                                   Kind::free_body,
-                                   Kind::over_constraint,
-                                   Kind::linear_solver,
-                                   Kind::status_cycle,
-                                   Kind::geometry_cycle,
-                                   Kind::loop_limit};
-    // name, what is merged, whether friction grows, what it counts as, what it answers
+    // name, what is merged, whether friction grows, what it counts as, what it answers: kinds of failure of the attempt
+    // before after which it has ever helped (contrib/studies/robustness/README.md)
     std::vector<Attempt> attempts = {{"the loops as they are asked for", asked, false, {}, {}}};
     const auto           add      = [&](const bool fits, const Attempt &attempt)
     {
       if (fits && model_.parameters.strategy.uses(*attempt.remedy))
         attempts.push_back(attempt);
     };
-    add(asked.geometry && inner.any(), {"a geometry loop", inner, false, Remedy::geometry_loop, any});
-    add(asked.status && slides, {"a geometry loop and growing friction", inner, true, Remedy::growing_friction, any});
-    add(asked.status && asked.threshold, {"geometry and status loops", coupled, false, Remedy::status_loops, any});
-    add(asked.any(), {"three loops", none, false, Remedy::three_loops, any});
-    add(frozen, {"the coupled threshold", coupled, false, Remedy::coupled_threshold, any});
+    add(asked.geometry && inner.any(),
+        {"a geometry loop",
+         inner,
+         false,
+         Remedy::geometry_loop,
+         {Kind::newton_stalled, Kind::newton_limit, Kind::status_cycle}});
+    add(asked.status && slides,
+        {"a geometry loop and growing friction",
+         inner,
+         true,
+         Remedy::growing_friction,
+         {Kind::newton_stalled, Kind::status_cycle, Kind::inverted_cell, Kind::geometry_cycle, Kind::loop_limit}});
+    add(asked.status && asked.threshold,
+        {"geometry and status loops",
+         coupled,
+         false,
+         Remedy::status_loops,
+         {Kind::newton_stalled, Kind::status_cycle}});
+    add(asked.any(),
+        {"three loops",
+         none,
+         false,
+         Remedy::three_loops,
+         {Kind::newton_stalled,
+          Kind::newton_limit,
+          Kind::status_cycle,
+          Kind::inverted_cell,
+          Kind::geometry_cycle,
+          Kind::loop_limit,
+          Kind::not_finite,
+          Kind::free_body,
+          Kind::over_constraint,
+          Kind::linear_solver}});
+    add(frozen,
+        {"the coupled threshold", coupled, false, Remedy::coupled_threshold, {Kind::newton_limit, Kind::loop_limit}});
     return attempts;
   }
 

@@ -6,7 +6,6 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_control.h>
-#include <deal.II/lac/solver_gmres.h>
 
 #include <algorithm>
 #include <cmath>
@@ -84,34 +83,28 @@ namespace Nodus
     return dealii::Utilities::MPI::sum(changed, communicator) <= most_changed;
   }
 
-  unsigned int CondensedSolver::conjugate_gradients(const Condensation &condensation,
-                                                    const Vector       &rhs,
-                                                    const double        tolerance,
-                                                    Vector             &y) const
+  bool CondensedSolver::conjugate_gradients(const Condensation &condensation,
+                                            const Vector       &rhs,
+                                            const double        tolerance,
+                                            Vector             &y,
+                                            unsigned int       &iterations) const
   {
+    iterations = 0;
+    y.reinit(rhs);
+    if (rhs.l2_norm() == 0.)
+      return true;
     dealii::SolverControl control(parameters_.maximum_iterations, tolerance * rhs.l2_norm(), false, false);
+    bool                  converged = true;
     try
     {
-      dealii::SolverCG<Vector> cg(control);
-      cg.solve(condensation, y, rhs, *multigrid_);
-      return control.last_step();
+      dealii::SolverCG<Vector>(control).solve(condensation, y, rhs, *multigrid_);
     }
     catch (const dealii::SolverControl::NoConvergence &)
     {
+      converged = false;
     }
-    // Conjugate gradients need a positive definite matrix; a structure that buckles has none.
-    const unsigned int before = control.last_step();
-    y                         = 0.;
-    try
-    {
-      dealii::SolverFGMRES<Vector> solver(control, dealii::SolverFGMRES<Vector>::AdditionalData(60));
-      solver.solve(condensation, y, rhs, *multigrid_);
-    }
-    catch (const dealii::SolverControl::NoConvergence &failure)
-    {
-      fail(failure.last_residual / rhs.l2_norm(), before + control.last_step(), tolerance);
-    }
-    return before + control.last_step();
+    iterations = control.last_step();
+    return converged;
   }
 
   unsigned int CondensedSolver::gmres(const SaddlePointOperator &matrix,
@@ -139,15 +132,20 @@ namespace Nodus
                                         const double               tolerance,
                                         BlockVector               &x) const
   {
-    x = 0.;
-    if (!matrix.symmetric())
-      return gmres(matrix, condensation, b, tolerance, x);
-    Vector rhs(b.block(0)), y;
-    condensation.condense(b, rhs);
-    y.reinit(rhs);
-    const unsigned int n = rhs.l2_norm() > 0. ? conjugate_gradients(condensation, rhs, tolerance, y) : 0;
-    condensation.expand(y, b, x);
-    return n;
+    x              = 0.;
+    unsigned int n = 0;
+    if (matrix.symmetric())
+    {
+      Vector rhs(b.block(0)), y;
+      condensation.condense(b, rhs);
+      if (conjugate_gradients(condensation, rhs, tolerance, y, n))
+      {
+        condensation.expand(y, b, x);
+        return n;
+      }
+    }
+    // has a variation, or is not positive definite: a structure that buckles
+    return n + gmres(matrix, condensation, b, tolerance, x);
   }
 
   LinearSolver::Report CondensedSolver::solve(const LinearSystem                     &system,

@@ -14,9 +14,9 @@ namespace Nodus
   class SaddlePointOperator;
 
   /// Conjugate gradients with multigrid on the displacements that are left when condensation.h has eliminated the
-  /// multipliers; a system with a variation needs GMRES on all unknowns, with condensation and multigrid as
-  /// preconditioner. The hierarchy is kept over several systems while it pays. Systems that cannot be condensed go to
-  /// the block solver.
+  /// multipliers; a system with a variation, or one that is not positive definite, needs GMRES on all unknowns, with
+  /// condensation and multigrid as preconditioner. The hierarchy is kept over several systems while it pays. Systems
+  /// that cannot be condensed go to the block solver.
   class CondensedSolver : public LinearSolver
   {
   public:
@@ -37,8 +37,12 @@ namespace Nodus
                          const BlockVector         &b,
                          double                     tolerance,
                          BlockVector               &x) const;
-    unsigned int
-    conjugate_gradients(const Condensation &condensation, const Vector &rhs, double tolerance, Vector &y) const;
+    /// @returns whether they converged: they need a positive definite matrix.
+    bool         conjugate_gradients(const Condensation &condensation,
+                                     const Vector       &rhs,
+                                     double              tolerance,
+                                     Vector             &y,
+                                     unsigned int       &iterations) const;
     unsigned int gmres(const SaddlePointOperator &matrix,
                        Condensation              &condensation,
                        const BlockVector         &b,

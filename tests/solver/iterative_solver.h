@@ -97,6 +97,11 @@ namespace ModelProblem
       options.void_node  = 7;
       run("Void multiplier", options, 10, 35, true);
     }
+    {
+      Options options = base;
+      options.buckles = true;
+      run("Not positive definite", options, 10, 100, true);
+    }
 
     parameters.maximum_iterations = 3;
     try

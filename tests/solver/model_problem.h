@@ -41,6 +41,7 @@ namespace ModelProblem
     bool         consistent      = false; ///< multipliers coupled by the surface mass
     int          void_node       = -1;    ///< this slave node's lambda has neither couplings nor a diagonal
     int          duplicate_node  = -1;    ///< this slave node repeats the lambda row of node 0
+    bool         buckles         = false; ///< a spring pushes in the middle of the master: not positive definite
   };
 
   class TwoCubes
@@ -59,6 +60,8 @@ namespace ModelProblem
       make_mesh();
       dof_handler.distribute_dofs(fe);
       assemble_bulk();
+      if (options.buckles)
+        add_pushing_spring();
       number_slave_nodes();
       system.layout = &layout;
       layout.reinit(system.rhs);
@@ -94,6 +97,14 @@ namespace ModelProblem
       const Vector3 axis({std::sqrt(.5), std::sqrt(.5), 0.});
       return std::cos(options.tilt) * x + std::sin(options.tilt) * dealii::cross_product_3d(axis, x) +
              (1. - std::cos(options.tilt)) * (axis * x) * axis;
+    }
+
+    /// Nine tenths of the diagonal of the node in the middle, which is more than its neighbours hold, along z.
+    void add_pushing_spring()
+    {
+      for (unsigned int n = 0; n < node_positions.size(); ++n)
+        if (node_positions[n].distance(Point(.5, .5, .5)) < 1e-6)
+          system.bulk.add_to_diagonal(dim * n + 2, -.9 * system.bulk.diagonal(n)[8]);
     }
 
     void assemble_bulk()

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What is each of the things good for that are tried where something fails?
 
-    ablation.py [--seeds N ...] [--cases N] [--jobs N] [--time-limit S] [--remedies NAME ...]
+    ablation.py [--seeds N[:CASES] ...] [--jobs N] [--time-limit S] [--remedies NAME ...]
 
 Runs random cases (random_cases.py) and the cases of prm/ and of hard_paths.py, with merged iterations and with three
 loops, and reads from the end of each log what was tried and how often. Then every case in which a remedy was used runs
@@ -84,8 +84,7 @@ def run(options, name, path, sets, without):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=int, nargs="*", default=[1, 2])
-    parser.add_argument("--cases", type=int, default=200)
+    parser.add_argument("--seeds", nargs="*", default=["1:200", "2:100"], help="and the number of their cases, 200 without")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--time-limit", type=int, default=60, help="CPU seconds of one run")
     parser.add_argument("--remedies", nargs="*", help="these alone")
@@ -96,9 +95,9 @@ def main():
     done = json.load(open(store)) if os.path.exists(store) else {}
 
     cases = fixed_cases()
-    for seed in options.seeds:
-        for n in range(1, options.cases + 1):
-            case = random_cases.RandomCase(seed, n)
+    for seed, _, number in (text.partition(":") for text in options.seeds):
+        for n in range(1, int(number or 200) + 1):
+            case = random_cases.RandomCase(int(seed), n)
             cases[f"seed {seed}, case {n}"] = (case.write(f"ablation/seed_{seed}"), {})
 
     def run_all(jobs):
