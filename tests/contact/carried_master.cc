@@ -70,7 +70,8 @@ namespace
     check("  side of the cube", problem.displacement(1, Point(1, 1, 1))[0], 0.003, 1e-7);
     check("  force on the plane", problem.rigid_bodies()[0].force[2], -10., 1e-9);
     check("  of contact", problem.contact_resultants()[0].master_force[2], 10., 1e-9);
-    check_count("  Newton iterations of the last increment", problem.iterations().newton, 2);
+    // one or two, as the last digits of iterative solution have it
+    check("  at most two Newton iterations in the last increment", problem.iterations().newton <= 2);
   }
 
   /// The beam turns by M H/(E I); that the force is eccentric on the bent beam changes this by F H^2/(E I) = 0.0012.
