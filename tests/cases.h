@@ -6,6 +6,9 @@
 #include <nodus/parameters/parameters.h>
 #include <nodus/run/contact_problem.h>
 
+#include "numbers.h"
+
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <iomanip>
@@ -140,29 +143,74 @@ namespace Cases
     return rank == 0;
   }
 
-  /// Prints "ok" or the deviation: @p value against @p reference, relative to @p scale (the reference itself when 0).
+  /// A line "what: text" of the first rank.
+  inline void report(const std::string &what, const std::string &text)
+  {
+    if (root())
+      std::cout << what << ": " << text << std::endl;
+  }
+
+  /// Prints @p value, as it is against @p reference within @p tolerance, relative to @p scale (the reference itself
+  /// when 0), and "NO" when it is not.
   inline void check(const std::string &what,
                     const double       value,
                     const double       reference,
                     const double       tolerance,
                     const double       scale = 0.)
   {
-    const double deviation = std::abs(value - reference) / (scale > 0. ? scale : std::abs(reference));
-    if (!root())
-      return;
-    if (std::getenv("NODUS_TEST_LOG") != nullptr)
-      std::cout << "    " << std::setprecision(10) << value << " deviation " << deviation << std::endl;
-    std::cout << what << ": reference " << std::setprecision(9) << reference << " within " << tolerance << ": ";
-    if (deviation <= tolerance)
-      std::cout << "yes" << std::endl;
-    else
-      std::cout << "NO, value " << std::setprecision(10) << value << ", deviation " << deviation << std::endl;
+    if (root() && std::getenv("NODUS_TEST_LOG") != nullptr)
+      std::cout << "    " << std::setprecision(10) << value << " deviation "
+                << std::abs(value - reference) / (scale > 0. ? scale : std::abs(reference)) << std::endl;
+    report(what, Numbers::comparison(value, reference, tolerance, scale));
   }
 
   inline void check(const std::string &what, const bool holds)
   {
-    if (root())
-      std::cout << what << ": " << (holds ? "yes" : "NO") << std::endl;
+    report(what, holds ? "yes" : "NO");
+  }
+
+  /// The components of a vector, all to the same digit; the tolerance is relative to the length of the reference.
+  inline void check(const std::string &what, const Vector3 &value, const Vector3 &reference, const double tolerance)
+  {
+    const double       size = reference.norm(), difference = (value - reference).norm();
+    const bool         holds = difference <= tolerance * size, snap = tolerance <= Numbers::tight;
+    std::ostringstream text;
+    for (unsigned int c = 0; c < dim; ++c)
+      text << (holds ? Numbers::number(snap ? reference[c] : value[c], 5, size) : Numbers::plain(value[c], 10)) << ' ';
+    text << "(as the reference, within " << tolerance;
+    if (holds)
+      text << (snap ? "" : ", off by " + Numbers::small(difference / size)) << ')';
+    else
+      text << "), deviation " << difference / size << ": NO";
+    report(what, text.str());
+  }
+
+  /// Prints a number that does not depend on round-off, and "NO" when it is above @p bound.
+  inline void check_count(const std::string &what, const unsigned int count, const unsigned int bound)
+  {
+    report(what, std::to_string(count) + " (at most " + std::to_string(bound) + (count <= bound ? ")" : "): NO"));
+  }
+
+  /// Prints a number that has to be @p reference, and "NO" when it is not.
+  inline void check_equal(const std::string &what, const unsigned int count, const unsigned int reference)
+  {
+    report(what,
+           std::to_string(count) + (count == reference ? "" : " (reference " + std::to_string(reference) + "): NO"));
+  }
+
+  /// The one of @p values that is farthest from @p reference.
+  inline double farthest(const std::vector<double> &values, const double reference)
+  {
+    return *std::max_element(values.begin(),
+                             values.end(),
+                             [reference](const double a, const double b)
+                             { return std::abs(a - reference) < std::abs(b - reference); });
+  }
+
+  /// Prints an error that the discretisation leaves, with @p digits, and "NO" when it is above @p bound.
+  inline void check_error(const std::string &what, const double error, const double bound, const int digits = 3)
+  {
+    report(what, Numbers::error_below(error, bound, digits));
   }
 
   /// Index of the slave node of a pair at a reference position.

@@ -70,7 +70,8 @@ namespace
     check("  side of the cube", problem.displacement(1, Point(1, 1, 1))[0], 0.003, 1e-7);
     check("  force on the plane", problem.rigid_bodies()[0].force[2], -10., 1e-9);
     check("  of contact", problem.contact_resultants()[0].master_force[2], 10., 1e-9);
-    check("  Newton iterations of the last increment", problem.iterations().newton <= 2);
+    // one or two, as the last digits of iterative solution have it
+    check("  at most two Newton iterations in the last increment", problem.iterations().newton <= 2);
   }
 
   /// The beam turns by M H/(E I); that the force is eccentric on the bent beam changes this by F H^2/(E I) = 0.0012.
@@ -128,12 +129,12 @@ namespace
     by_pair.run();
     by_body.run();
     const ContactResultants on_pair = by_pair.contact_resultants()[0], on_body = by_body.contact_resultants()[0];
-    compare("finite rotation, degree " + std::to_string(degree) + ", " + text_of(scheme) + (loops ? ", loops" : "") +
-                ", moved by the body as by the pair: force",
-            on_body.master_force,
-            on_pair.master_force,
-            1e-8);
-    compare("  moment", on_body.master_moment, on_pair.master_moment, 1e-8);
+    check("finite rotation, degree " + std::to_string(degree) + ", " + text_of(scheme) + (loops ? ", loops" : "") +
+              ", moved by the body as by the pair: force",
+          on_body.master_force,
+          on_pair.master_force,
+          1e-8);
+    check("  moment", on_body.master_moment, on_pair.master_moment, 1e-8);
 
     const Vector3 translation({0.1, -0.05, 0.2}), force = -on_pair.master_force;
     const Vector3 moment               = moment_about(centre + translation, -on_pair.master_moment, force);
@@ -145,8 +146,8 @@ namespace
     ContactProblem problem(q, world(), log());
     problem.run();
     const RigidBodyMotion found = problem.rigid_bodies()[0];
-    compare("  driven: translation", found.translation, translation, 1e-6);
-    compare(
+    check("  driven: translation", found.translation, translation, 1e-6);
+    check(
         "  rotation", found.rotation, 50. / 180. * dealii::numbers::PI / std::sqrt(14.) * Vector3({1., 2., 3.}), 1e-6);
     if (loops)
       check("  converges quadratically", is_quadratic(folder));
@@ -167,9 +168,10 @@ namespace
     p.newton.contact_tolerance         = 1e-11;
     ContactProblem problem(p, world(), log());
     problem.run();
-    check("tilted, " + text_of(scheme) + ": turns", std::abs(problem.rigid_bodies()[0].rotation[1]) > 0.05);
-    check("  no fallback", problem.iterations().fallbacks == 0);
-    check("  merged iterations converge quadratically", problem.iterations().newton <= 5);
+    // not a reference, but how far it is to turn
+    check("tilted, " + text_of(scheme) + ": turns by", problem.rigid_bodies()[0].rotation[1], 0.06, 0.1);
+    check_count("  fallbacks", problem.iterations().fallbacks, 0);
+    check_count("  quadratically, in iterations", problem.iterations().newton, 5);
   }
 
   /// Pressed in by 0.04 and dragged with friction, then pressed by the force that this takes.
@@ -247,7 +249,7 @@ namespace
     problem.run();
     const RigidBodyMotion roller = problem.rigid_bodies()[0];
     check("roller: turns by its way over its radius", roller.rotation[1], 0.3, 0.01);
-    check("  without resistance", std::abs(roller.force[0]) < 0.02 * 0.5 * 20.);
+    check_error("  its resistance over that of sliding", std::abs(roller.force[0]) / (0.5 * 20.), 0.02);
     check("  pressed by", problem.contact_resultants()[0].master_force[2], 20., 1e-8);
   }
 

@@ -143,6 +143,7 @@ int main(int argc, char **argv)
       if (std::getenv("NODUS_TEST_LOG") != nullptr)
         std::cout << "   worst " << worst << " asymmetry " << asymmetry / K_largest << std::endl;
       std::cout << "Q" << degree << ", " << name << ", " << unpaired << " unpaired:" << std::endl;
+      report("  largest row sum of the tangent", Numbers::number(K_largest));
       check("  tangent to 1e-6", worst < 1e-6);
       check("  symmetric to 1e-12", asymmetry < 1e-12 * K_largest);
     }

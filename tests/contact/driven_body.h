@@ -11,11 +11,6 @@
 
 namespace Cases
 {
-  inline void compare(const std::string &name, const Vector3 &value, const Vector3 &reference, const double tolerance)
-  {
-    check(name, (value - reference).norm(), 0., tolerance, reference.norm());
-  }
-
   /// Moment about @p centre of a force and its moment about the origin.
   inline Vector3 moment_about(const Point &centre, const Vector3 &moment, const Vector3 &force)
   {

@@ -78,8 +78,10 @@ namespace
     const std::vector<double> energy = last_row("energy.csv", 0), motion = last_row("rigid_bodies.csv", 3);
     check("  its work", energy[2], 0.05, 1e-7);
     check("  is stored", energy[5], 0.05, 1e-7);
-    check("  rigid_bodies.csv", motion.size() == 15 && std::abs(motion[5] + 0.01) < 1e-9);
-    check("  Newton iterations of the last increment", problem.iterations().newton <= 2);
+    check("  rigid_bodies.csv, columns", motion.size(), 15, 1e-9);
+    check("  displacement", motion[5], -0.01, 1e-7);
+    // one or two, as the last digits of iterative solution have it
+    check("  at most two Newton iterations in the last increment", problem.iterations().newton <= 2);
   }
 
   /// Viscous stabilisation brings the plate down to the cube.
@@ -203,28 +205,27 @@ namespace
     ContactProblem problem(q, world(), log());
     problem.run();
     const RigidBodyMotion found = problem.rigid_bodies()[0];
-    compare("finite rotation, degree " + std::to_string(degree) + ", " + text_of(solver) + (loops ? ", loops" : "") +
-                ": translation",
-            found.translation,
-            translation,
-            1e-6);
-    compare(
-        "  rotation", found.rotation, 50. / 180. * dealii::numbers::PI / std::sqrt(14.) * motion.rotation_axis, 1e-6);
-    compare("  corner of the plate",
-            problem.displacement(2, Point(1.5, -0.5, 1.5)),
-            prescribed.displacement(2, Point(1.5, -0.5, 1.5)),
-            1e-6);
-    compare("  force", -problem.contact_resultants()[0].master_force, force, 1e-9);
-    compare("  moment",
-            moment_about(Point(0.5, 0.4, 1.) + found.translation,
-                         -problem.contact_resultants()[0].master_moment,
-                         -problem.contact_resultants()[0].master_force),
-            moment,
-            1e-9);
+    check("finite rotation, degree " + std::to_string(degree) + ", " + text_of(solver) + (loops ? ", loops" : "") +
+              ": translation",
+          found.translation,
+          translation,
+          1e-6);
+    check("  rotation", found.rotation, 50. / 180. * dealii::numbers::PI / std::sqrt(14.) * motion.rotation_axis, 1e-6);
+    check("  corner of the plate",
+          problem.displacement(2, Point(1.5, -0.5, 1.5)),
+          prescribed.displacement(2, Point(1.5, -0.5, 1.5)),
+          1e-6);
+    check("  force", -problem.contact_resultants()[0].master_force, force, 1e-9);
+    check("  moment",
+          moment_about(Point(0.5, 0.4, 1.) + found.translation,
+                       -problem.contact_resultants()[0].master_moment,
+                       -problem.contact_resultants()[0].master_force),
+          moment,
+          1e-9);
     if (loops)
       check("  converges quadratically", is_quadratic(folder));
     const std::vector<double> energy = last_row("energy.csv", 0);
-    check("  energy that is not accounted for", std::abs(energy[9]) < 0.02 * energy[2]);
+    check_error("  energy that is not accounted for", std::abs(energy[9] / energy[2]), 0.02);
   }
 
   /// A roller of radius 1, pressed into a block by 20 and pulled along x by 0.3.
@@ -257,7 +258,7 @@ namespace
     problem.run();
     const RigidBodyMotion roller = problem.rigid_bodies()[0];
     check("roller: turns by its way over its radius", roller.rotation[1], 0.3, 0.01);
-    check("  without resistance", std::abs(roller.force[0]) < 0.02 * 0.5 * 20.);
+    check_error("  its resistance over that of sliding", std::abs(roller.force[0]) / (0.5 * 20.), 0.02);
     check("  pressed by", problem.contact_resultants()[0].master_force[2], 20., 1e-8);
   }
 } // namespace

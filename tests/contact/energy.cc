@@ -134,8 +134,8 @@ int main(int argc, char **argv)
         before = row.at("imbalance");
       }
       else
-        check("twice the increments leave a third of the imbalance or less",
-              std::abs(row.at("imbalance")) < std::abs(before) / 3.);
+        check_error(
+            "twice the increments: imbalance over that before", std::abs(row.at("imbalance") / before), 1. / 3.);
       check("  external work", row.at("external work"), plastic + stored, n == 10 ? 2e-2 : 1e-2);
     }
   }

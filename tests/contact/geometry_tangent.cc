@@ -281,16 +281,19 @@ namespace
           left[what]              = std::max(left[what], std::abs(scale[row] * frozen(row, column) - difference[row]));
         }
       }
-    std::ostringstream tolerance;
-    tolerance << kind.tolerance;
     const char *const names[3] = {"forces", "gaps", "slips"};
     for (unsigned int what = 0; what < (kind.friction == Friction::none ? 2 : 3); ++what)
     {
       if (std::getenv("NODUS_TEST_LOG") != nullptr)
         std::cout << kind.name << ": " << names[what] << " " << error[what] << " of " << left[what] << " = "
                   << error[what] / left[what] << std::endl;
-      check(kind.name + ": variation of " + names[what] + " within " + tolerance.str(),
-            error[what] <= kind.tolerance * left[what] || error[what] < 1e-8);
+      // relative to what the tangent of the pairing that is kept lacks, which is the first number
+      const double relative = error[what] < 1e-8 ? 0. : error[what] / left[what];
+      const bool   tight    = kind.tolerance <= Numbers::tight;
+      report(kind.name + ": variation of " + names[what] + ' ' +
+                 Numbers::number(left[what] < 1e-8 ? 0. : left[what], 3) +
+                 (tight ? " within " + Numbers::plain(kind.tolerance) : ", error"),
+             Numbers::error_below(relative, kind.tolerance, 2));
     }
   }
 

@@ -52,6 +52,8 @@ namespace
 
   double difference(const Outcome &a, const Outcome &b)
   {
+    if (std::getenv("NODUS_TEST_LOG") != nullptr)
+      std::cout << "    " << a.counts.newton << " iterations" << std::endl;
     double largest = 0., scale = 0.;
     for (unsigned int i = 0; i < a.values.size(); ++i)
     {
@@ -69,6 +71,8 @@ int main(int argc, char **argv)
   auto p = plate();
   use_loops(p);
   const Outcome loops = run(p);
+  // Code_Aster 14.6 on this mesh, as in v3_plate_on_rigid_plane.cc
+  check("three loops: 1e5 u_x at x = 0", 1e-7 * loops.values.back(), 2.922193, 1e-3);
   for (unsigned int combination = 1; combination < 8; ++combination)
   {
     const auto mode      = [&](const unsigned int bit) { return combination & bit ? Mode::newton : Mode::fixed_point; };
@@ -79,13 +83,11 @@ int main(int argc, char **argv)
     const std::string name   = std::string("merged") + (combination & 4 ? " geometry" : "") +
                              (combination & 2 ? " threshold" : "") + (combination & 1 ? " status" : "");
     check(name + ": the answer of the loops to 1e-6", difference(merged, loops) <= 1e-6);
-    check("  without fallback", merged.counts.fallbacks == 0);
-    if (combination & 2)
-      check("  fewer Newton iterations", merged.counts.newton < loops.counts.newton);
+    check_count("  fallbacks", merged.counts.fallbacks, 0);
     if (combination == 7)
-      check("  at most 12", merged.counts.newton <= 12);
-    if (std::getenv("NODUS_TEST_LOG") != nullptr)
-      std::cout << "    " << difference(merged, loops) << " " << merged.counts.newton << std::endl;
+      check_count("  Newton iterations", merged.counts.newton, 12);
+    else if (combination & 2)
+      check_count("  Newton iterations, fewer than of the loops", merged.counts.newton, loops.counts.newton - 1);
   }
 
   // Too few iterations for the merged loops, enough for each step of growing friction.
@@ -93,10 +95,8 @@ int main(int argc, char **argv)
   const Outcome fallback      = run(p);
   use_loops(p);
   const Outcome again = run(p);
-  check("fallback is counted", fallback.counts.fallbacks == 2);
+  check_equal("fallbacks", fallback.counts.fallbacks, 2);
   check("fallback gives the answer of the loops to 1e-7", difference(fallback, again) <= 1e-7);
-  if (std::getenv("NODUS_TEST_LOG") != nullptr)
-    std::cout << "    " << difference(fallback, again) << std::endl;
 
   // Without growing friction, for statuses are a loop anyway. On several ranks MUMPS adds up in an order that depends
   // on timing: repeats of one binary on two ranks gave differences of 0, 2e-11 and 5e-9. The zero says that the
@@ -105,7 +105,7 @@ int main(int argc, char **argv)
   const Outcome three_loops   = run(p);
   p.geometry_loop.mode = p.threshold_loop.mode = Mode::newton;
   const Outcome given_up                       = run(p);
-  check("fallback to three loops is counted", given_up.counts.fallbacks == 2);
+  check_equal("fallbacks to three loops", given_up.counts.fallbacks, 2);
   check("fallback to three loops begins exactly where the increment did",
         difference(given_up, three_loops) <=
             (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1 ? 1e-9 : 1e-6));

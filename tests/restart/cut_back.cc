@@ -32,6 +32,8 @@ namespace
 
     const auto at = [&](const double t) { return std::count(cut.times.begin(), cut.times.end(), t) == 1; };
     check(name + ": cut back, and the times asked for are met", cut.times.size() > 2 && at(0.5) && at(1.));
+    report("  increments", std::to_string(cut.times.size()));
+    check("  force at the end", force(cut), force(direct), 1e-12);
     check("  the small increments alone: the same to 1e-12", difference(cut, direct) <= 1e-12);
   }
 } // namespace

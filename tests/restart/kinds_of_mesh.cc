@@ -99,8 +99,9 @@ int main(int argc, char **argv)
     clear(shares);
     run(first, false, 2);
     const Outcome continued = run(second, true);
-    check(std::string(name) + ": two increments are left", continued.times.size() == 2);
-    check(std::string(name) + ": the same result", difference(continued, reference) <= 1e-6);
+    check_equal(std::string(name) + ": increments that are left", continued.times.size(), 2);
+    check("  force at the end", force(continued), force(reference), 1e-6);
+    check("  the same result", difference(continued, reference) <= 1e-6);
   }
 
   clear(shares);

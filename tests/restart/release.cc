@@ -58,12 +58,10 @@ int main(int argc, char **argv)
         const double       held = forces[0].second[0], pull = forces[3].second[0];
         std::ostringstream name;
         name << "t = " << t;
-        check(name.str() + ": displacement", std::abs(u - at->second.u) <= 1e-9);
-        check("  reactions",
-              std::abs(held - at->second.held) <= 1e-7 * E && std::abs(pull - at->second.pull) <= 1e-7 * E);
-        if (std::getenv("NODUS_TEST_LOG") != nullptr && root())
-          std::cout << "    " << u << ' ' << held << ' ' << pull << std::endl;
+        check(name.str() + ": displacement", u, at->second.u, 1e-8, 0.1);
+        check("  reaction of the other end", held, at->second.held, 1e-7, E);
+        check("  of the end that is pulled", pull, at->second.pull, 1e-7, E);
       });
   problem.run();
-  check("all times were met", met == expected.size());
+  check_equal("times that were met", met, expected.size());
 }

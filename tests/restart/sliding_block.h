@@ -104,6 +104,13 @@ namespace SlidingBlock
     return result;
   }
 
+  /// Of contact on the slave at the end.
+  inline Vector3 force(const Outcome &a)
+  {
+    const std::vector<double> &forces = a.groups[2].second;
+    return Vector3({forces[0], forces[1], forces[2]});
+  }
+
   /// Largest difference of any kind of value, relative to the largest value of that kind.
   inline double difference(const Outcome &a, const Outcome &b)
   {

@@ -4,7 +4,7 @@
 
 #include "solve/anderson_mixing.h"
 
-#include <deal.II/base/utilities.h>
+#include <deal.II/base/mpi.h>
 
 #include <cmath>
 #include <iomanip>

@@ -32,6 +32,6 @@ int main(int argc, char **argv)
         newton += problem.iterations().newton;
       });
   problem.run();
-  check("no merged iteration is given up", fallbacks == 0);
-  check("six Newton iterations for each increment on the average, at most", newton <= 30);
+  check_count("merged iterations that are given up", fallbacks, 0);
+  check_count("Newton iterations, six for each increment on the average", newton, 30);
 }

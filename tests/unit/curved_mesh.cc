@@ -106,12 +106,12 @@ namespace
     for (const std::string other : {"27_2_format_22", "20_2", "20_2_format_22"})
     {
       const Measures m = measure(cylinder(other), 2);
-      check(other + ": volume as 27_2", std::abs(m.volume - reference.volume) < 1e-13);
-      check(other + ": mantle as 27_2", std::abs(m.mantle - reference.mantle) < 1e-13);
+      check(other + ": volume as 27_2", m.volume, reference.volume, 1e-13);
+      check(other + ": mantle as 27_2", m.mantle, reference.mantle, 1e-13);
     }
     const Measures corners = measure(cylinder("27_2"), 1), first_order = measure(cylinder("8_2"), 2);
-    check("8_2: volume as the corners of 27_2", std::abs(corners.volume - first_order.volume) < 1e-13);
-    check("8_2: mantle as the corners of 27_2", std::abs(corners.mantle - first_order.mantle) < 1e-13);
+    check("8_2: volume as the corners of 27_2", first_order.volume, corners.volume, 1e-13);
+    check("8_2: mantle as the corners of 27_2", first_order.mantle, corners.mantle, 1e-13);
   }
 
   /// Distance of a point of the mantle from the nearest of the points with parameter k/4 of the four parabolas through
@@ -142,8 +142,8 @@ namespace
     for (const unsigned int level : {1u, 2u})
     {
       const Measures fine = measure(cylinder("27_1", level), 2);
-      check("refined " + std::to_string(level) + ": volume stays", std::abs(fine.volume - coarse.volume) < 1e-12);
-      check("refined " + std::to_string(level) + ": mantle stays", std::abs(fine.mantle - coarse.mantle) < 1e-6);
+      check("refined " + std::to_string(level) + ": volume stays", fine.volume, coarse.volume, 1e-12);
+      check("refined " + std::to_string(level) + ": mantle stays", fine.mantle, coarse.mantle, 1e-6);
     }
     double before = 0.;
     for (const unsigned int level : {0u, 1u, 2u, 3u})

@@ -60,7 +60,7 @@ int main(int argc, char **argv)
           up  = up && std::abs(f.pairing[k].normal[2] + 1) < 1e-12;
           gap = gap && std::abs(f.assembler->distance(f.state, k) + 0.1) < 1e-12;
         }
-      check("  overhang of 0.02 faces: all found", found == f.pairing.size());
+      check_equal("  overhang of 0.02 faces: all found", found, f.pairing.size());
       check("  normals point down, never to the far side", up);
       check("  d_n = -0.1", gap);
       double area = 0.;

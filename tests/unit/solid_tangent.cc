@@ -4,6 +4,8 @@
 
 #include "bulk/solid_assembler.h"
 
+#include "../numbers.h"
+
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
@@ -249,7 +251,9 @@ namespace
         error     = std::max(error, std::abs(K(i, j) - expected(i, j)));
         asymmetry = std::max(asymmetry, std::abs(K(i, j) - K(j, i)));
       }
-    check(symmetrised ? "tangent = symmetric part of the difference quotient" : "tangent = difference quotient",
+    const std::string size = ", largest row sum " + Numbers::number(K.linfty_norm());
+    check((symmetrised ? "tangent = symmetric part of the difference quotient" : "tangent = difference quotient") +
+              size,
           error / K.linfty_norm(),
           1e-8);
     check("tangent symmetric", asymmetry / K.linfty_norm(), 1e-13);
