@@ -91,6 +91,8 @@ namespace Nodus
                     const std::string          &centre);
 
     void add_contact_pair(ParameterHandler &prm, ContactPairParameters &pair);
+    /// The subsections on how the case is solved, from "Geometry loop" to "Adaptivity".
+    void add_solution(ParameterHandler &prm, Parameters &parameters);
   } // namespace ParameterKeys
 } // namespace Nodus
 
