@@ -45,6 +45,7 @@ namespace Nodus
     const BlockLayout &layout = model_.contact->surfaces().layout();
     system_.layout            = &layout;
     layout.reinit(system_.rhs);
+    layout.reinit(iterate_);
     u_.reinit(layout.owned[0], model_.relevant, model_.communicator);
     for (Vector *v : {&forces_.internal,
                       &forces_.external,
