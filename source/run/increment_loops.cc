@@ -15,7 +15,7 @@ namespace Nodus
     constexpr unsigned int maximum_halvings = 5;
     /// Passes whose change is more than this fraction of the one before are mixed with those before them; those of the
     /// geometry from the fourth on.
-    constexpr double       geometry_contraction = 0.3, threshold_contraction = 0.5;
+    constexpr double       geometry_contraction = 0.3, threshold_contraction = 0.7;
     constexpr unsigned int plain_geometry_passes = 3;
     /// Of the translation of a rigid body among the displacements that are mixed.
     constexpr double rigid_weight = 1e-6;

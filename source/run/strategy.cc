@@ -63,13 +63,18 @@ namespace Nodus
          inner,
          true,
          Remedy::growing_friction,
-         {Kind::newton_stalled, Kind::status_cycle, Kind::inverted_cell, Kind::geometry_cycle, Kind::loop_limit}});
+         {Kind::newton_stalled,
+          Kind::newton_limit,
+          Kind::status_cycle,
+          Kind::inverted_cell,
+          Kind::geometry_cycle,
+          Kind::loop_limit}});
     add(asked.status && asked.threshold,
         {"geometry and status loops",
          coupled,
          false,
          Remedy::status_loops,
-         {Kind::newton_stalled, Kind::status_cycle}});
+         {Kind::newton_stalled, Kind::newton_limit, Kind::status_cycle}});
     add(asked.any(),
         {"three loops",
          none,
