@@ -5,19 +5,19 @@
 
 #include <algorithm>
 
-// What is tried where something fails, outermost first. Each row has a case that fails without it; the numbers are in
-// theory sections 21 and 22.
+// What is tried where something fails, on one page. Names, columns of contact.csv and what each is good for:
+// base/remedy.h and contrib/doc/architecture.md.
 //
-// | level        | what is tried                                | where                                       |
-// |--------------|----------------------------------------------|---------------------------------------------|
-// | increment    | halves                                       | LoadPath (LoadStepping::cut_back)           |
-// | increment    | the attempts of the ladder below             | Strategy::ladder                            |
-// | attempt      | friction grows from nothing                  | continue_in_friction                        |
-// | geometry     | mixing of passes; half-way with rigid bodies | IncrementLoops::geometry_converged          |
-// | thresholds   | secant steps                                 | SecantAcceleration                          |
-// | statuses     | regularised law; one at a time; frozen       | Status::update                              |
-// | Newton       | halved step into inverted cells, line search | Newton::take_step                           |
-// | linear solve | the direct solver                            | RescuedSolver                               |
+// | level          | what is tried                                                     | where |
+// |----------------|-------------------------------------------------------------------|-------------------------------------|
+// | increment      | the attempts of the ladder below, by kind of failure, then halves | here, LoadPath::solve | | new
+// mesh       | sticking sites held; then slip that may turn                      | LoadPath::restore_equilibrium | |
+// attempt        | friction grows from nothing, in steps that halve                  | continue_in_friction | |
+// geometry loop  | passes that are slow are mixed                                    |
+// IncrementLoops::geometry_converged  | | threshold loop | passes that are slow are mixed |
+// IncrementLoops::threshold_converged | | statuses cycle | regularised law; one site at a time; frozen |
+// Status::find_period                 | | Newton's step  | halved out of inverted cells, and with line search |
+// Newton::take_step                   | | linear solver  | the direct one | RescuedSolver                       |
 
 namespace Nodus
 {
