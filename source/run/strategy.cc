@@ -8,16 +8,18 @@
 // What is tried where something fails, on one page. Names, columns of contact.csv and what each is good for:
 // base/remedy.h and contrib/doc/architecture.md.
 //
-// | level          | what is tried                                                     | where |
-// |----------------|-------------------------------------------------------------------|-------------------------------------|
-// | increment      | the attempts of the ladder below, by kind of failure, then halves | here, LoadPath::solve | | new
-// mesh       | sticking sites held; then slip that may turn                      | LoadPath::restore_equilibrium | |
-// attempt        | friction grows from nothing, in steps that halve                  | continue_in_friction | |
-// geometry loop  | passes that are slow are mixed                                    |
-// IncrementLoops::geometry_converged  | | threshold loop | passes that are slow are mixed |
-// IncrementLoops::threshold_converged | | statuses cycle | regularised law; one site at a time; frozen |
-// Status::find_period                 | | Newton's step  | halved out of inverted cells, and with line search |
-// Newton::take_step                   | | linear solver  | the direct one | RescuedSolver                       |
+// | level          | what is tried                                | where                               |
+// |----------------|----------------------------------------------|-------------------------------------|
+// | increment      | the attempts of the ladder below             | Strategy::ladder                    |
+// | increment      | halves                                       | LoadPath::solve                     |
+// | new mesh       | sites held as they were, then slip that may  | LoadPath::restore_equilibrium       |
+// |                | turn                                         |                                     |
+// | attempt        | friction grows from nothing, steps halve     | continue_in_friction                |
+// | geometry loop  | slow passes are mixed                        | IncrementLoops::geometry_converged  |
+// | threshold loop | slow passes are mixed                        | IncrementLoops::threshold_converged |
+// | statuses cycle | regularised law; one site at a time; frozen  | Status::find_period                 |
+// | Newton's step  | halved: inverted cells, line search          | Newton::take_step                   |
+// | linear solver  | the direct one                               | RescuedSolver                       |
 
 namespace Nodus
 {
