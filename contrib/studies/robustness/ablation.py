@@ -71,10 +71,8 @@ def run(options, name, path, sets, without):
     code = os.waitstatus_to_exitcode(status)
     with open(results + ".log") as log:
         text = log.read()
-    used = re.search(r"^Tried where something failed, times: (.*)$", text, re.MULTILINE)
-    pairs = re.findall(r"([a-z][a-z ]*?) (\d+)(?:,|$)", used.group(1)) if used else []
-    # a run that is stopped by the limit has no such line
-    return {"exit": code, "cpu": usage.ru_utime + usage.ru_stime, "used": {n: int(k) for n, k in pairs},
+    # a run that is stopped by the limit does not say what it tried
+    return {"exit": code, "cpu": usage.ru_utime + usage.ru_stime, "used": random_cases.remedies_used(text),
             "limit": code in (-signal.SIGKILL, -signal.SIGXCPU),
             "Newton": sum(map(int, re.findall(r"(\d+) Newton iterations?", text))),
             "halved": text.count("the increment is halved"),

@@ -322,6 +322,12 @@ def classify(reason, killed):
     return next((cause for cause, words in CAUSES.items() if re.search(words, reason)), "other")
 
 
+def remedies_used(log):
+    """How often each thing was tried where something failed, by name, from the end of a log."""
+    line = re.search(r"^Tried where something failed, times: (.*)$", log, re.MULTILINE)
+    return {name: int(n) for name, n in re.findall(r"([a-z][a-z ]*?) (\d+)(?:,|$)", line.group(1))} if line else {}
+
+
 def run_case(options, n):
     folder = "random_cases"
     case = RandomCase(options.seed, n)
@@ -341,7 +347,7 @@ def run_case(options, n):
         text = log.read()
     row = {"case": n, **case.facts, "exit": child.returncode, "cpu": usage.ru_utime + usage.ru_stime,
            "cut-backs": text.count("the increment is halved"), "fallbacks": text.count("merged iteration given up: "),
-           "means": text.count("from here the laws are regularised"),
+           "used": remedies_used(text),
            "lost": text.count("have no master point any more")}  # fmt: skip
     row["reason"] = text.strip().splitlines()[-1] if child.returncode else ""
     if child.returncode:
@@ -370,8 +376,8 @@ def summary(rows):
               f"{sum(r['cut-backs'] for r in rows)} / {sum(r['cut-backs'] > 0 for r in rows)}"),
              ("fallbacks to loops / cases with one",
               f"{sum(r['fallbacks'] for r in rows)} / {sum(r['fallbacks'] > 0 for r in rows)}"),
-             ("times that laws were regularised / cases with one",
-              f"{sum(r['means'] for r in rows)} / {sum(r['means'] > 0 for r in rows)}"),
+             *((f"{name}: times / cases", f"{sum(r['used'].get(name, 0) for r in rows)} / {sum(name in r['used'] for r in rows)}")
+               for name in sorted({name for r in rows for name in r["used"]})),
              ("cases with closed nodes that lost their master point", sum(r["lost"] > 0 for r in rows))]  # fmt: skip
     print("\n| | |\n|---|---|")
     for name, value in lines:
