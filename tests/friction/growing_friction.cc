@@ -76,5 +76,6 @@ int main(int argc, char **argv)
 
   use_loops(p);
   const Outcome loops = run(p);
-  check("three loops: force over that", loops.force[0] / grown.force[0], 1., 0.01);
+  // two digits: the loops stop at tolerances of their own
+  check_error("three loops: deviation of the force from that", std::abs(loops.force[0] / grown.force[0] - 1.), 0.01, 2);
 }
