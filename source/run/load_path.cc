@@ -156,10 +156,12 @@ namespace Nodus
       }
     };
     const std::string as_it_was = "; the next increment goes on from the state as it was taken over";
-    if (!solved(true, "; again with slip that may turn"))
+    const bool        may_turn  = model.parameters.strategy.uses(Remedy::free_slip);
+    if (!solved(true, may_turn ? "; again with slip that may turn" : as_it_was))
     {
-      parts_.journal.count(Remedy::free_slip);
-      if (!model.parameters.strategy.uses(Remedy::free_slip) || !solved(false, as_it_was))
+      if (may_turn)
+        parts_.journal.count(Remedy::free_slip);
+      if (!may_turn || !solved(false, as_it_was))
         return status.hold_friction(false);
     }
     // the forces that were taken over belong to the mesh before: they do no work

@@ -7,7 +7,7 @@ namespace Nodus
 {
   /// What is tried where something fails. First the attempts at an increment after the first one, in the order of the
   /// ladder (run/strategy.cc), then what helps inside an attempt. Each has a name for the parameter file, a column of
-  /// contact.csv, and a row in the table of contrib/doc/architecture.md with a case that fails without it.
+  /// contact.csv, and a row in the table of contrib/doc/architecture.md, which says what happens without it.
   enum class Remedy : unsigned int
   {
     geometry_loop,
