@@ -139,30 +139,18 @@ namespace Nodus
     Status    &status = model.contact->status();
     const auto before = parts_.results.resultants();
     parts_.equilibrium.begin_increment(parts_.path.standstill());
-    const auto solved = [&](const bool hold, const std::string &otherwise)
+    status.hold_friction(true);
+    try
     {
-      try
-      {
-        status.hold_friction(hold);
-        parts_.strategy.solve_increment();
-        return true;
-      }
-      catch (const SolverFailure &failure)
-      {
-        parts_.journal.diagnosis.end_attempt(failure.what());
-        model.roll_back(parts_.states);
-        parts_.journal.console.remark(std::string("no equilibrium on the new mesh: ") + failure.what() + otherwise);
-        return false;
-      }
-    };
-    const std::string as_it_was = "; the next increment goes on from the state as it was taken over";
-    const bool        may_turn  = model.parameters.strategy.uses(Remedy::free_slip);
-    if (!solved(true, may_turn ? "; again with slip that may turn" : as_it_was))
+      parts_.strategy.solve_increment();
+    }
+    catch (const SolverFailure &failure)
     {
-      if (may_turn)
-        parts_.journal.count(Remedy::free_slip);
-      if (!may_turn || !solved(false, as_it_was))
-        return status.hold_friction(false);
+      parts_.journal.diagnosis.end_attempt(failure.what());
+      model.roll_back(parts_.states);
+      status.hold_friction(false);
+      return parts_.journal.console.remark(std::string("no equilibrium on the new mesh: ") + failure.what() +
+                                           "; the next increment goes on from the state as it was taken over");
     }
     // the forces that were taken over belong to the mesh before: they do no work
     start.applied = parts_.equilibrium.applied_forces();

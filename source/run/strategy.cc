@@ -12,8 +12,6 @@
 // |----------------|----------------------------------------------|-------------------------------------|
 // | increment      | the attempts of the ladder below             | Strategy::ladder                    |
 // | increment      | halves                                       | LoadPath::solve                     |
-// | new mesh       | sites held as they were, then slip that may  | LoadPath::restore_equilibrium       |
-// |                | turn                                         |                                     |
 // | attempt        | friction grows from nothing, steps halve     | continue_in_friction                |
 // | geometry loop  | slow passes are mixed                        | IncrementLoops::geometry_converged  |
 // | threshold loop | slow passes are mixed                        | IncrementLoops::threshold_converged |
@@ -71,12 +69,6 @@ namespace Nodus
           Kind::inverted_cell,
           Kind::geometry_cycle,
           Kind::loop_limit}});
-    add(asked.status && asked.threshold,
-        {"geometry and status loops",
-         coupled,
-         false,
-         Remedy::status_loops,
-         {Kind::newton_stalled, Kind::newton_limit, Kind::status_cycle}});
     add(asked.any(),
         {"three loops",
          none,

@@ -12,10 +12,8 @@ namespace Nodus
   {
     geometry_loop,
     growing_friction,
-    status_loops,
     three_loops,
     coupled_threshold,
-    free_slip,
     smaller_friction_steps,
     mixed_geometry,
     mixed_thresholds,
@@ -26,12 +24,10 @@ namespace Nodus
     direct_solver
   };
 
-  constexpr std::array<const char *, 14> remedy_names = {{"geometry loop",
+  constexpr std::array<const char *, 12> remedy_names = {{"geometry loop",
                                                           "growing friction",
-                                                          "status loops",
                                                           "three loops",
                                                           "coupled threshold",
-                                                          "free slip on a new mesh",
                                                           "smaller friction steps",
                                                           "mixed geometry",
                                                           "mixed thresholds",
