@@ -5,9 +5,10 @@
 
 namespace Nodus
 {
-  /// A barrier in which ranks that come early sleep. MPI's own keep their cores busy: to be used where few ranks have
-  /// the work, those at the contact, before the exchange of what they have found. Late by 0.1 ms or a sixteenth of the
-  /// wait. Collective.
+  /// A barrier in which ranks that come early sleep, to be used where few ranks have the work, those at the contact,
+  /// before the exchange of what they have found. It is there for ranks that share cores with other work, where those
+  /// that poll hardly get a turn; on idle cores it costs and saves no time (contrib/doc/scaling.md). Late by 0.1 ms or
+  /// a sixteenth of the wait. Collective.
   void wait_for_all(MPI_Comm communicator);
 } // namespace Nodus
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What is each of the things good for that are tried where something fails?
 
-    ablation.py [--seeds N[:CASES] ...] [--jobs N] [--time-limit S] [--remedies NAME ...]
+    ablation.py [--seeds N[:CASES] ...] [--jobs N] [--time-limit S] [--longest S] [--remedies NAME ...]
 
 Runs random cases (random_cases.py) and the cases of prm/ and of hard_paths.py, with merged iterations and with three
 loops, and reads from the end of each log what was tried and how often. Then every case in which a remedy was used runs
@@ -85,6 +85,7 @@ def main():
     parser.add_argument("--seeds", nargs="*", default=["1:200", "2:100"], help="and the number of their cases, 200 without")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--time-limit", type=int, default=60, help="CPU seconds of one run")
+    parser.add_argument("--longest", type=float, default=1e9, help="cases that took more CPU seconds do not run again")
     parser.add_argument("--remedies", nargs="*", help="these alone")
     parser.add_argument("--base", action="store_true", help="no run without a remedy")
     options = parser.parse_args()
@@ -116,7 +117,7 @@ def main():
         return
     rows = []
     for remedy in options.remedies or remedies():
-        users = [name for name in cases if base[name]["used"].get(remedy)]
+        users = [name for name in cases if base[name]["used"].get(remedy) and base[name]["cpu"] <= options.longest]
         run_all([(name, remedy) for name in users])
         without = {name: done[f"{name} | {remedy}"] for name in users}
         lost = [name for name in users if base[name]["exit"] == 0 and without[name]["exit"]]

@@ -43,7 +43,7 @@ MUTATIONS = [
     ("thresholds", "contact/friction_limit.cc", "return limit / lambda;", "return 0.5 * limit / lambda;",
      "derivative of the threshold", "friction/merged_loops|contact/contact_tangent|friction/laws|unit/"),
     ("slip", "contact/status.cc", "now_.slip[k][i] += slip[k][i];", "now_.slip[k][i] -= slip[k][i];", "sign of the accumulated slip",
-     "friction/|unit/vtu|contact/invariance|contact/energy"),
+     "friction/tangent_frame"),
     ("transfer", "run/state_vectors.cc", "interface.stuck[s] = std::abs(sites[n * s + closed] - 1.) < 1e-6;",
      "interface.stuck[s] = std::abs(sites[n * s + closed] - 1.) < 0.6;", "nodes between closed and open ones are taken for stuck",
      "adaptivity/|unit/state"),

@@ -1,0 +1,31 @@
+# Runs the case PRM with NODUS in FOLDER twice, with the keys SETS: it must finish by way of REMEDY, and fail without it.
+# Prints what was tried, the forces reached and the message.
+
+function(run code log)
+  set(keys)
+  foreach(_key ${SETS} ${ARGN})
+    list(APPEND keys --set ${_key})
+  endforeach()
+  file(REMOVE_RECURSE ${FOLDER})
+  execute_process(COMMAND ${NODUS} ${PRM} --set "Output/Results folder=${FOLDER}" ${keys}
+    RESULT_VARIABLE _code OUTPUT_VARIABLE _log ERROR_VARIABLE _log)
+  set(${code} ${_code} PARENT_SCOPE)
+  set(${log} "${_log}" PARENT_SCOPE)
+endfunction()
+
+run(code log)
+if(NOT code EQUAL 0)
+  message(FATAL_ERROR "${log}\nnodus ended with exit code ${code}")
+endif()
+string(REGEX MATCH "Tried where something failed, times: [^\n]*" tried "${log}")
+message("${tried}")
+if(NOT tried MATCHES "[:,] ${REMEDY} [0-9]")
+  message(FATAL_ERROR "'${REMEDY}' was not used")
+endif()
+
+run(code log "Strategy/Without=${REMEDY}")
+string(REGEX MATCH "nodus: no solution: [^\n]*" reason "${log}")
+message("without '${REMEDY}': exit code ${code}, ${reason}")
+if(NOT code EQUAL 1 OR reason STREQUAL "")
+  message(FATAL_ERROR "${log}\nthe case was to fail without '${REMEDY}'")
+endif()
