@@ -51,16 +51,16 @@ MUTATIONS = [
      "tangents[1] -= tangents[0];", "frames of interpolated tangents", "adaptivity/|unit/state"),
     ("transfer", "run/state_vectors.cc", "values[n * k + i] = sum[i] / sum[n];", "values[n * k + i] = sum[i];",
      "means of the integration points around a node", "adaptivity/|unit/state"),
-    ("rollback", "run/model.cc", "solid->start_from(states.now.history);", "", "history of the materials after a cut-back",
-     "restart/cut_back|unit/state|restart/"),
-    ("rollback", "run/model.cc", "contact->resume(states.now.unknowns, states.committed.unknowns.block(0));", "",
-     "contact after a return to a former state", "restart/cut_back|friction/growing_friction|unit/state"),
+    ("rollback", "run/model.cc", "    states.now = state;", "    states.now.unknowns = state.unknowns;",
+     "statuses, thresholds and slips stay as an attempt left them", "restart/cut_back|friction/merged_loops|friction/growing_friction"),
+    ("rollback", "run/strategy.cc", "        model_.roll_back(states_);\n", "", "an attempt begins where the one before ended",
+     "friction/merged_loops|restart/cut_back"),
     ("rollback", "run/load_path.cc", "parts_.states.committed = now;", "parts_.states.committed.unknowns = now.unknowns;",
      "what a commit takes over", "restart/|friction/"),
     ("exchange", "parallel/ghost_exchange.cc", "owned[std::size_t(i) * n_components + c] += part;",
      "owned[std::size_t(i) * n_components + c] = part;", "sums over ranks", "unit/ghost_exchange"),
-    ("exchange", "parallel/ghost_exchange.cc", "messages.turn          = 1 - messages.turn;", "messages.turn = 0;",
-     "one buffer instead of two in turn", "unit/ghost_exchange"),
+    ("exchange", "parallel/ghost_exchange.cc", "    update(values, n_components);\n", "", "ghosts keep their part of a sum",
+     "unit/ghost_exchange"),
     ("materials", "bulk/j2_plasticity.cc", "along              = slope / (3. * mu_ + slope);",
      "along              = slope / (2. * mu_ + slope);", "elastoplastic tangent", "unit/material|unit/solid"),
     ("materials", "bulk/neo_hookean.cc", "- mu_ * log_J + lambda_ / 2. * log_J * log_J;",
@@ -122,7 +122,7 @@ def main():
             with open(path, "w") as stream:
                 stream.write(text)
         unseen += failure in (None, "does not build")
-        print(f"| {number} | {room} | `{line}` → `{becomes}` | {meaning} | {failure or 'NONE'} |", flush=True)
+        print(f"| {number} | {room} | `{line.strip()}` → `{becomes.strip()}` | {meaning} | {failure or 'NONE'} |", flush=True)
     return 1 if unseen else 0
 
 
