@@ -1,5 +1,5 @@
 # Runs the case PRM with NODUS in FOLDER twice, with the keys SETS: it must finish by way of REMEDY, and fail without it.
-# Prints what was tried, the forces reached and the message.
+# Prints what was tried and the message of the failure.
 
 function(run code log)
   set(keys)
