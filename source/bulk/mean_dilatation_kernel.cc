@@ -1,4 +1,5 @@
 #include "bulk/mean_dilatation_kernel.h"
+#include "bulk/dilatation_modes.h"
 #include "bulk/hex_kernel.h"
 
 #include <cmath>
@@ -14,19 +15,11 @@ namespace Nodus
     {
     public:
       using Base = HexKernel<degree>;
+      using Base::Base;
       using typename Base::History;
       using typename Base::QuadraturePoint;
       static constexpr unsigned int n_nodes = Base::n_nodes, n_q = Base::n_q;
-      static constexpr unsigned int n_modes = degree == 1 ? 1 : dim + 1; ///< of pressure and dilatation
-
-      explicit MeanDilatationKernel(const dealii::FiniteElement<dim> &fe)
-          : Base(fe)
-      {
-        const dealii::QGauss<dim> quadrature(degree + 1);
-        for (unsigned int q = 0; q < n_q; ++q)
-          for (unsigned int k = 0; k < n_modes; ++k)
-            mode_[q][k] = k == 0 ? 1. : 2. * quadrature.point(q)[k - 1] - 1.;
-      }
+      static constexpr unsigned int n_modes = DilatationModes<degree>::n_modes;
 
       void integrate(const QuadraturePoint *points,
                      const Material        &material,
@@ -68,22 +61,26 @@ namespace Nodus
             s *= points[q].JxW;
           add_point(points[q].JxW, small_strain, q, S, stiffness ? &C : nullptr, pressure);
         }
-        solve(pressure);
+        modes_.solve(pressure);
         Lanes excess[n_modes] = {}; // of the pressure over that of Newton's method
         if (extrapolated)
         {
-          solve(dilatation);
+          modes_.solve(dilatation);
           for (unsigned int k = 0; k < n_modes; ++k)
             for (unsigned int l = 0; l < n_modes; ++l)
               excess[k] += bulk_[k][l] * (dilatation_[l] - dilatation[l]);
-          solve(excess);
+          modes_.solve(excess);
         }
         for (unsigned int q = 0; q < n_q; ++q)
         {
-          const Lanes p = at_point(pressure, q);
+          Lanes p, too_much;
+          modes_.at_point(q, pressure, p);
           add_force(points[q].JxW, small_strain, p, q, force);
           if (stiffness && !small_strain)
-            add_pressure(points[q].JxW, p - at_point(excess, q), q);
+          {
+            modes_.at_point(q, excess, too_much);
+            add_pressure(points[q].JxW, p - too_much, q);
+          }
         }
         if (stiffness)
           set_stiffness(stiffness);
@@ -112,8 +109,7 @@ namespace Nodus
       bool set_deformation(const QuadraturePoint *points, const bool small_strain, const Lanes *u, Lanes &smallest)
       {
         std::fill_n(dilatation_, n_modes, Lanes{});
-        for (unsigned int k = 0; k < n_modes; ++k)
-          std::fill_n(mass_[k], n_modes, Lanes{});
+        modes_.clear_mass();
         for (unsigned int q = 0; q < n_q; ++q)
         {
           this->deformation_gradient(points[q], u, q, F_[q]);
@@ -126,19 +122,14 @@ namespace Nodus
               return false;
             move_gradients(q);
           }
-          for (unsigned int k = 0; k < n_modes; ++k)
-          {
-            const Lanes weighted = mode_[q][k] * points[q].JxW;
-            dilatation_[k] += weighted * J_[q];
-            for (unsigned int l = 0; l <= k; ++l)
-              mass_[k][l] += weighted * mode_[q][l];
-          }
+          modes_.add_mass(q, points[q].JxW);
+          modes_.project(q, points[q].JxW, J_[q], dilatation_);
         }
-        factorise();
-        solve(dilatation_);
+        modes_.factorise();
+        modes_.solve(dilatation_);
         for (unsigned int q = 0; q < n_q; ++q)
         {
-          theta_[q] = at_point(dilatation_, q);
+          modes_.at_point(q, dilatation_, theta_[q]);
           if (small_strain)
           {
             for (unsigned int i = 0; i < dim; ++i)
@@ -174,8 +165,7 @@ namespace Nodus
               const unsigned int j = (i + 1) % dim, k = (i + 2) % dim, J = (I + 1) % dim, K = (I + 2) % dim;
               linear += (A[j][J] * A[k][K] - A[j][K] * A[k][J]) * (B[i][I] - A[i][I]);
             }
-          for (unsigned int m = 0; m < n_modes; ++m)
-            dilatation[m] += mode_[q][m] * points[q].JxW * linear;
+          modes_.project(q, points[q].JxW, linear, dilatation);
         }
       }
 
@@ -226,8 +216,7 @@ namespace Nodus
         }
         const Lanes trace = tau[0] + tau[1] + tau[2];
         const Lanes rate  = small_strain ? Lanes{} + 1. / 3. : 1. / (3. * theta_[q]); // of Fbar with theta
-        for (unsigned int k = 0; k < n_modes; ++k)
-          pressure[k] += mode_[q][k] * rate * trace;
+        modes_.project(q, rate, trace, pressure);
         if (!C)
           return;
 
@@ -275,7 +264,7 @@ namespace Nodus
         const Lanes weighted_J = small_strain ? JxW : JxW * J_[q];
         for (unsigned int m = 0; m < n_modes; ++m)
         {
-          const double mode = mode_[q][m];
+          const double mode = modes_.value(q, m);
           for (unsigned int a = 0; a < n_nodes; ++a)
             for (unsigned int i = 0; i < dim; ++i)
             {
@@ -285,7 +274,7 @@ namespace Nodus
                                                    mixed[pair_index[i][2]] * g[2]);
             }
           for (unsigned int l = 0; l < n_modes; ++l)
-            bulk_[m][l] += mode * mode_[q][l] * second;
+            bulk_[m][l] += mode * modes_.value(q, l) * second;
         }
       }
 
@@ -325,7 +314,7 @@ namespace Nodus
           Lanes column[n_modes];
           for (unsigned int m = 0; m < n_modes; ++m)
             column[m] = volume_[m][i];
-          solve(column);
+          modes_.solve(column);
           for (unsigned int m = 0; m < n_modes; ++m)
             volume_[m][i] = column[m];
           for (unsigned int m = 0; m < n_modes; ++m)
@@ -379,48 +368,9 @@ namespace Nodus
         }
       }
 
-      /// mass_ = L D L^T, in place: L below the diagonal, 1/D on it.
-      void factorise()
-      {
-        for (unsigned int j = 0; j < n_modes; ++j)
-        {
-          Lanes scaled[n_modes]; // row j of L D
-          for (unsigned int l = 0; l < j; ++l)
-          {
-            scaled[l] = mass_[j][l];
-            for (unsigned int m = 0; m < l; ++m)
-              scaled[l] -= scaled[m] * mass_[l][m];
-            mass_[j][l] = scaled[l] * mass_[l][l];
-            mass_[j][j] -= mass_[j][l] * scaled[l];
-          }
-          mass_[j][j] = 1. / mass_[j][j];
-        }
-      }
-
-      void solve(Lanes (&x)[n_modes]) const
-      {
-        for (unsigned int k = 0; k < n_modes; ++k)
-          for (unsigned int l = 0; l < k; ++l)
-            x[k] -= mass_[k][l] * x[l];
-        for (unsigned int k = n_modes; k-- > 0;)
-        {
-          x[k] *= mass_[k][k];
-          for (unsigned int l = k + 1; l < n_modes; ++l)
-            x[k] -= mass_[l][k] * x[l];
-        }
-      }
-
-      Lanes at_point(const Lanes (&coefficient)[n_modes], const unsigned int q) const
-      {
-        Lanes sum = coefficient[0];
-        for (unsigned int k = 1; k < n_modes; ++k)
-          sum += mode_[q][k] * coefficient[k];
-        return sum;
-      }
-
-      double mode_[n_q][n_modes];
-      Lanes  mass_[n_modes][n_modes], dilatation_[n_modes];
-      Lanes  F_[n_q][dim][dim], J_[n_q], theta_[n_q], stress_[n_q][n_pairs]; ///< stress times JxW
+      DilatationModes<degree> modes_;
+      Lanes                   dilatation_[n_modes];                                           ///< coefficients of theta
+      Lanes                   F_[n_q][dim][dim], J_[n_q], theta_[n_q], stress_[n_q][n_pairs]; ///< stress times JxW
       /// integrals over the cell, by modes: of J grad, of the second derivative of the energy with theta and d, twice
       /// theta
       Lanes volume_[n_modes][dim * n_nodes], coupling_[n_modes][dim * n_nodes], bulk_[n_modes][n_modes];

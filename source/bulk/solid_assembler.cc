@@ -27,6 +27,7 @@ namespace Nodus
       , loads(dof_handler, mapping, materials, body_loads)
       , n_nodes(dof_handler.get_fe().n_dofs_per_cell() / dim)
       , constrained(dof_handler)
+      , stiffness(n_nodes)
   {
     const auto                                                   &fe = dof_handler.get_fe();
     std::map<VolumetricTreatment, std::shared_ptr<ElementKernel>> kernel_of;
@@ -42,7 +43,6 @@ namespace Nodus
     at_cell.u.resize(fe.n_dofs_per_cell());
     for (auto *v : {&at_lanes.X, &at_lanes.u, &at_lanes.u_before, &at_lanes.force})
       v->resize(fe.n_dofs_per_cell());
-    at_lanes.stiffness.resize(n_nodes * (n_nodes + 1) / 2 * dim * dim);
     for (auto *v : {&at_cell.internal, &at_cell.external})
       v->reinit(fe.n_dofs_per_cell());
     at_cell.tangent.reinit(fe.n_dofs_per_cell(), fe.n_dofs_per_cell());
@@ -139,40 +139,6 @@ namespace Nodus
     }
   }
 
-  void SolidAssembler::Scratch::make_positions(BlockCsrMatrix &tangent)
-  {
-    std::vector<unsigned int> group_nodes;
-    std::vector<std::size_t>  group_end;
-    group_nodes.reserve(cell_nodes.size());
-    group_end.reserve(cells.size());
-    for (unsigned int c = 0; c < cells.size(); ++c)
-      if (!is_constrained(c))
-      {
-        group_nodes.insert(group_nodes.end(), cell_nodes.begin() + c * n_nodes, cell_nodes.begin() + (c + 1) * n_nodes);
-        group_end.push_back(group_nodes.size());
-      }
-    constrained.add_groups(group_nodes, group_end);
-    tangent.reinit(nodes, group_nodes, group_end);
-    constrained.find_positions(tangent);
-    positions.clear();
-    positions.reserve(cells.size() * n_nodes * (n_nodes + 1) / 2);
-    for (unsigned int c = 0; c < cells.size(); ++c)
-      for (unsigned int a = 0; a < n_nodes; ++a)
-        for (unsigned int b = a; b < n_nodes; ++b)
-          positions.push_back(is_constrained(c)
-                                  ? BlockCsrMatrix::Position()
-                                  : tangent.position(cell_nodes[c * n_nodes + a], cell_nodes[c * n_nodes + b]));
-  }
-
-  inline double &SolidAssembler::Scratch::entry(
-      const unsigned int a, const unsigned int i, const unsigned int b, const unsigned int k, const unsigned int lane)
-  {
-    if (b < a)
-      return entry(b, k, a, i, lane);
-    const unsigned int pair = a * n_nodes - a * (a + 1) / 2 + b;
-    return reinterpret_cast<double *>(at_lanes.stiffness.data())[((pair * dim + i) * dim + k) * n_lanes + lane];
-  }
-
   void SolidAssembler::Scratch::note_prescribed(const AffineConstraints<double> *constraints)
   {
     for (unsigned int i = 0; i < dofs.size(); ++i)
@@ -198,44 +164,7 @@ namespace Nodus
         at_nodes.external[dim * node[i / dim] + i % dim] += at_cell.external(i);
     }
     if (with_tangent)
-      for (unsigned int a = 0; a < n_nodes; ++a)
-        for (unsigned int b = a; b < n_nodes; ++b)
-          for (unsigned int i = 0; i < dim; ++i)
-            for (unsigned int k = 0; k < dim; ++k)
-              entry(a, i, b, k, lane) += at_cell.tangent(dim * a + i, dim * b + k);
-  }
-
-  /// The blocks come from memory while the kernel computes.
-  void SolidAssembler::Scratch::prefetch(const Batch &batch, BlockCsrMatrix &tangent) const
-  {
-    const std::size_t               n_pairs  = n_nodes * (n_nodes + 1) / 2;
-    const BlockCsrMatrix::Position *position = positions.data() + batch.first * n_pairs;
-    for (std::size_t k = 0; k < batch.size * n_pairs; ++k, ++position)
-      if (position->stored())
-        __builtin_prefetch(tangent.block(position->block()), 1);
-  }
-
-  void SolidAssembler::Scratch::eliminate_prescribed(const unsigned int cell, const unsigned int lane)
-  {
-    const unsigned int *const node = cell_nodes.data() + cell * n_nodes;
-    for (unsigned int a = 0; a < n_nodes; ++a)
-      for (unsigned int i = 0; i < dim; ++i)
-      {
-        const unsigned int dof = dim * node[a] + i;
-        if (!at_nodes.is_prescribed[dof])
-          continue;
-        const double diagonal = std::abs(entry(a, i, a, i, lane));
-        for (unsigned int b = 0; b < n_nodes; ++b)
-          for (unsigned int k = 0; k < dim; ++k)
-          {
-            double &K = entry(b, k, a, i, lane);
-            at_nodes.rhs[dim * node[b] + k] -= K * at_nodes.prescribed[dof];
-            K = 0.;
-            if (a == b) // stored in full
-              entry(a, i, a, k, lane) = 0.;
-          }
-        entry(a, i, a, i, lane) = diagonal;
-      }
+      stiffness.add(lane, at_cell.tangent);
   }
 
   void
@@ -248,11 +177,7 @@ namespace Nodus
     if (loads.act_on(cell))
       std::copy(at_cell.external.begin(), at_cell.external.end(), at_cell.forces[1].begin());
     if (tangent)
-    {
-      at_cell.stiffness.resize(at_lanes.stiffness.size());
-      for (std::size_t k = 0; k < at_lanes.stiffness.size(); ++k)
-        at_cell.stiffness[k] = at_lanes.stiffness[k][lane];
-    }
+      stiffness.copy_cell(lane, at_cell.stiffness);
     constrained.add(constrained.index(cell),
                     at_cell.forces[0],
                     at_cell.forces[1],
@@ -263,34 +188,12 @@ namespace Nodus
                     {at_nodes.internal, at_nodes.external, at_nodes.rhs});
   }
 
-  void SolidAssembler::Scratch::add_stiffness(const unsigned int cell,
-                                              const unsigned int lane,
-                                              BlockCsrMatrix    &tangent) const
-  {
-    const std::size_t               n_pairs  = n_nodes * (n_nodes + 1) / 2;
-    const BlockCsrMatrix::Position *position = positions.data() + cell * n_pairs;
-    const double                   *K        = reinterpret_cast<const double *>(at_lanes.stiffness.data()) + lane;
-    for (unsigned int pair = 0; pair < n_pairs; ++pair, ++position, K += dim * dim * n_lanes)
-    {
-      if (!position->stored())
-        continue;
-      double *const block = tangent.block(position->block());
-      if (position->transposed())
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int k = 0; k < dim; ++k)
-            block[dim * k + i] += K[(dim * i + k) * n_lanes];
-      else
-        for (unsigned int i = 0; i < dim * dim; ++i)
-          block[i] += K[i * n_lanes];
-    }
-  }
-
   /// No force; on the rows of the nodes, which are prescribed, a diagonal of the size of the others.
   void SolidAssembler::Scratch::compute_rigid(const Batch &batch, Lanes &det_F)
   {
     det_F = Lanes{} + 1.;
     std::fill(at_lanes.force.begin(), at_lanes.force.end(), Lanes{});
-    std::fill(at_lanes.stiffness.begin(), at_lanes.stiffness.end(), Lanes{});
+    stiffness.set_zero();
     const ElementKernel::QuadraturePoint *const points = this->points(batch);
     for (unsigned int v = 0; v < batch.size; ++v)
     {
@@ -300,7 +203,7 @@ namespace Nodus
       const double diagonal = material(batch).youngs_modulus() * std::cbrt(volume) / n_nodes;
       for (unsigned int a = 0; a < n_nodes; ++a)
         for (unsigned int i = 0; i < dim; ++i)
-          entry(a, i, a, i, v) = diagonal;
+          stiffness.entry(a, i, a, i, v) = diagonal;
     }
   }
 
@@ -336,7 +239,7 @@ namespace Nodus
                             goes_on ? at_lanes.u_before.data() : nullptr,
                             {start->values.data() + batch.state, reached.data() + batch.state},
                             at_lanes.force.data(),
-                            with_stiffness ? at_lanes.stiffness.data() : nullptr,
+                            with_stiffness ? stiffness.data() : nullptr,
                             det_F);
   }
 
@@ -371,8 +274,8 @@ namespace Nodus
         at_nodes.internal[dim * node[i / dim] + i % dim] += at_lanes.force[i][v];
       if (!tangent)
         continue;
-      eliminate_prescribed(c, v);
-      add_stiffness(c, v, *tangent);
+      stiffness.eliminate_prescribed(v, node, at_nodes.is_prescribed, at_nodes.prescribed, at_nodes.rhs);
+      stiffness.add_to(*tangent, c, v);
     }
   }
 
@@ -413,7 +316,7 @@ namespace Nodus
       const Batch &batch = batches[n];
       gather(batch, at_nodes.u, at_lanes.u);
       if (tangent)
-        prefetch(batch, *tangent);
+        stiffness.prefetch(batch.first, batch.size, *tangent);
       Lanes det_F;
       if (material(batch).is_rigid())
         compute_rigid(batch, det_F);
@@ -472,6 +375,7 @@ namespace Nodus
 
   void SolidAssembler::make_sparsity(BlockCsrMatrix &tangent) const
   {
-    scratch_->make_positions(tangent);
+    Scratch &s = *scratch_;
+    s.stiffness.make_pattern(s.nodes, s.cell_nodes, s.constrained, tangent);
   }
 } // namespace Nodus

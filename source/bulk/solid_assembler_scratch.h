@@ -1,6 +1,7 @@
 #ifndef nodus_bulk_solid_assembler_scratch_h
 #define nodus_bulk_solid_assembler_scratch_h
 
+#include "bulk/batch_stiffness.h"
 #include "bulk/constrained_cells.h"
 #include "bulk/element_kernel.h"
 #include "bulk/loads.h"
@@ -26,7 +27,6 @@ namespace Nodus
             std::vector<BoundaryConditions::Load>                  &loads,
             const std::vector<BodyParameters::VolumetricTreatment> &treatments);
 
-    void make_positions(BlockCsrMatrix &tangent);
     void sweep(const Vector                            &u,
                double                                   t,
                Vector                                  &internal,
@@ -59,14 +59,14 @@ namespace Nodus
         return first + std::min(lane, size - 1);
       }
     };
-    std::vector<Batch>                    batches;
-    History                               start;   ///< states that the increment starts from
-    std::vector<Lanes>                    reached; ///< those of the last displacement: [batch][point][number]
-    ConstrainedCells                      constrained;
-    std::shared_ptr<const NodeMap>        nodes;      ///< of these cells, then of other ranks' constrained cells
-    std::vector<unsigned int>             cell_nodes; ///< [cell][node], local numbers
-    std::vector<DoFIndex>                 dofs;       ///< of the nodes of these cells
-    std::vector<BlockCsrMatrix::Position> positions;  ///< [cell][node a][node b >= a]; constrained: not stored
+    std::vector<Batch>             batches;
+    History                        start;   ///< states that the increment starts from
+    std::vector<Lanes>             reached; ///< those of the last displacement: [batch][point][number]
+    ConstrainedCells               constrained;
+    std::shared_ptr<const NodeMap> nodes;      ///< of these cells, then of other ranks' constrained cells
+    std::vector<unsigned int>      cell_nodes; ///< [cell][node], local numbers
+    std::vector<DoFIndex>          dofs;       ///< of the nodes of these cells
+    BatchStiffness                 stiffness;  ///< of the batch at hand
 
     const Material &material(const Batch &batch) const
     {
@@ -111,7 +111,7 @@ namespace Nodus
     /// Of the batch at hand, as in ElementKernel::integrate().
     struct AtLanes
     {
-      std::vector<Lanes> X, u, u_before, force, stiffness;
+      std::vector<Lanes> X, u, u_before, force;
     } at_lanes;
 
   private:
@@ -121,23 +121,18 @@ namespace Nodus
     bool
     is_last(const Vector &u, double t, const dealii::AffineConstraints<double> *constraints, BlockCsrMatrix *tangent);
     void note_prescribed(const dealii::AffineConstraints<double> *constraints);
-    /// Force and stiffness at the displacement in #at_lanes, the latter with @p with_stiffness, into the same.
+    /// Force at the displacement in #at_lanes, into the same; with @p with_stiffness also #stiffness.
     void compute(const Batch &batch, bool with_stiffness, Lanes &det_F);
     void compute_rigid(const Batch &batch, Lanes &det_F);
     /// Message for a cell with det F <= 0, or nothing.
     std::string turned_inside_out(const Batch &batch, const Lanes &det_F) const;
-    void        prefetch(const Batch &batch, BlockCsrMatrix &tangent) const;
-    /// What is in #at_lanes, with the loads on its cells, to the sums at the nodes and to the tangent.
+    /// What is in #at_lanes and #stiffness, with the loads on the cells, to the sums at the nodes and to the tangent.
     void scatter(const Batch &batch, BlockCsrMatrix *tangent);
     void copy_sums(Vector &internal, Vector &external, Vector *rhs) const;
 
     /// The cell in @p lane of the batch at hand.
     void add_loads(unsigned int cell, unsigned int lane, bool with_tangent);
     void add_constrained(unsigned int cell, unsigned int lane, BlockCsrMatrix *tangent);
-    void eliminate_prescribed(unsigned int cell, unsigned int lane);
-    void add_stiffness(unsigned int cell, unsigned int lane, BlockCsrMatrix &tangent) const;
-    /// Entry of the stiffness: node a, component i; node b, component k.
-    double &entry(unsigned int a, unsigned int i, unsigned int b, unsigned int k, unsigned int lane);
 
     /// What the last sweep was for, besides the displacement.
     struct LastSweep

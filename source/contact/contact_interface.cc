@@ -1,5 +1,7 @@
 #include "contact/contact_interface.h"
 #include "contact/geometry_tangent.h"
+#include "contact/initial_overlap.h"
+#include "contact/loci.h"
 #include "contact/site_values.h"
 #include "contact/tractions.h"
 #include "mesh/sides.h"
@@ -201,34 +203,10 @@ namespace Nodus
   /// Statuses of the first pairing.
   void ContactInterface::start_statuses()
   {
-    const MPI_Comm            communicator = surfaces_.layout().communicator;
-    std::vector<double>       distances;
-    std::vector<double>       deepest(surfaces_.n_pairs(), 0.);
-    std::vector<unsigned int> where(surfaces_.n_pairs(), dealii::numbers::invalid_unsigned_int);
+    std::vector<double> distances;
     for (unsigned int s = 0; s < pairing_.size(); ++s)
-    {
       distances.push_back(distance(s));
-      const unsigned int p = surfaces_.pair(s);
-      if (surfaces_.is_owned(s) && surfaces_.has_status(s) && pairing_[s].found && distances[s] > deepest[p])
-      {
-        deepest[p] = distances[s];
-        where[p]   = s;
-      }
-    }
-    for (unsigned int p = 0; p < surfaces_.n_pairs(); ++p)
-    {
-      const auto        &pair  = pairs_[p];
-      const double       limit = pair.overclosure_limit > 0. ? pair.overclosure_limit : 0.5 * surfaces_.face_size(p);
-      const auto         worst = dealii::Utilities::MPI::min_max_avg(deepest[p], communicator);
-      const bool         here  = dealii::Utilities::MPI::this_mpi_process(communicator) == worst.max_index;
-      const std::string  place = locus(here ? where[p] : dealii::numbers::invalid_unsigned_int);
-      std::ostringstream message;
-      message << "the bodies overlap at the start: " << place << " is " << worst.max
-              << " inside the master, the limit is " << limit << "; move the bodies apart, or raise 'Contact pair "
-              << p + 1 << "/Overclosure limit' if this is meant";
-      if (worst.max > limit)
-        throw InputError(message.str());
-    }
+    refuse_overlap(pairs_, surfaces_, pairing_, distances);
     status_.initialize(pairing_, distances);
   }
 
@@ -248,24 +226,6 @@ namespace Nodus
   }
 
   // ------------------------------------------------------------------------------------------ thresholds and statuses
-
-  bool ContactInterface::has_friction() const
-  {
-    return status_.has_friction();
-  }
-
-  bool ContactInterface::slides() const
-  {
-    return has_friction() && std::any_of(pairs_.begin(),
-                                         pairs_.end(),
-                                         [](const ContactPairParameters &pair)
-                                         { return pair.contact_law != ContactPairParameters::ContactLaw::tied; });
-  }
-
-  bool ContactInterface::threshold_follows_pressure() const
-  {
-    return status_.threshold_follows_pressure();
-  }
 
   void ContactInterface::freeze_threshold(const double duration)
   {
@@ -402,16 +362,6 @@ namespace Nodus
 
   // ------------------------------------------------------------------------------------------------- values and places
 
-  double ContactInterface::distance(const unsigned int site) const
-  {
-    return assembler_.distance(state_, site);
-  }
-
-  std::array<double, 2> ContactInterface::slip(const unsigned int site) const
-  {
-    return assembler_.slip(state_, site);
-  }
-
   std::vector<Vector3> ContactInterface::displacement_jumps() const
   {
     const std::vector<Vector3> u = displacement();
@@ -429,26 +379,6 @@ namespace Nodus
     return dealii::Utilities::MPI::sum(n, surfaces_.layout().communicator);
   }
 
-  double ContactInterface::largest_difference(const Vector &a, const Vector &b, std::string *const worst) const
-  {
-    std::vector<Vector3> u, v;
-    surfaces_.gather(a, u);
-    surfaces_.gather(b, v);
-    double      largest = 0.;
-    std::string here    = u.empty() ? "" : coordinates(surfaces_.nodes()[0].X);
-    for (unsigned int i = 0; i < u.size(); ++i)
-      if (const double difference = (u[i] - v[i]).norm(); difference > largest)
-      {
-        largest = difference;
-        here    = coordinates(surfaces_.nodes()[i].X);
-      }
-    const MPI_Comm communicator = surfaces_.layout().communicator;
-    const auto     all          = dealii::Utilities::MPI::min_max_avg(largest, communicator);
-    if (worst != nullptr)
-      *worst = dealii::Utilities::MPI::broadcast(communicator, here, all.max_index);
-    return all.max;
-  }
-
   std::string ContactInterface::locus(const unsigned int site) const
   {
     const auto found =
@@ -458,27 +388,6 @@ namespace Nodus
 
   std::vector<std::string> ContactInterface::loci(const std::vector<unsigned int> &sites, const unsigned int n) const
   {
-    std::vector<unsigned int> ordered(sites);
-    std::sort(ordered.begin(),
-              ordered.end(),
-              [&](const auto a, const auto b) { return surfaces_.order(a) < surfaces_.order(b); });
-    std::vector<std::pair<DoFIndex, std::string>> first;
-    for (unsigned int i = 0; i < std::min<std::size_t>(n, ordered.size()); ++i)
-    {
-      const unsigned int site = ordered[i], p = surfaces_.pair(site);
-      const auto        &name = pairs_[p].name;
-      first.emplace_back(surfaces_.order(site),
-                         (surfaces_.is_point(site) ? "integration point " : "slave node ") +
-                             coordinates(surfaces_.site_position(site)) + " of contact pair " + std::to_string(p + 1) +
-                             (name.empty() ? "" : " ('" + name + "')"));
-    }
-    std::vector<std::pair<DoFIndex, std::string>> all;
-    for (const auto &part : dealii::Utilities::MPI::all_gather(surfaces_.layout().communicator, first))
-      all.insert(all.end(), part.begin(), part.end());
-    std::sort(all.begin(), all.end());
-    std::vector<std::string> found;
-    for (unsigned int i = 0; i < std::min<std::size_t>(n, all.size()); ++i)
-      found.push_back(all[i].second);
-    return found;
+    return Nodus::loci(pairs_, surfaces_, sites, n);
   }
 } // namespace Nodus

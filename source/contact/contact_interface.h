@@ -58,10 +58,15 @@ namespace Nodus
     /// The state that this refers to has been set to another one, to which @p unknowns belong.
     void resume(const BlockVector &unknowns, const Vector &start);
 
-    /// Pairs with friction at all, with friction that is not tied, with thresholds that follow the pressure.
-    bool has_friction() const;
-    bool slides() const;
-    bool threshold_follows_pressure() const;
+    /// Pairs with friction at all, with thresholds that follow the pressure.
+    bool has_friction() const
+    {
+      return status_.has_friction();
+    }
+    bool threshold_follows_pressure() const
+    {
+      return status_.threshold_follows_pressure();
+    }
 
     /// Freezes the thresholds of the present pressures and, where friction depends on them, of the present slip rates.
     /// @p duration of the increment [time]; 0: the rates stay.
@@ -103,15 +108,19 @@ namespace Nodus
     void hold(FreeMotions &motions, bool as_closed) const;
 
     /// d_n without what is adjusted, and the tangential jump of the increment, at an owned site.
-    double                distance(unsigned int site) const;
-    std::array<double, 2> slip(unsigned int site) const;
+    double distance(const unsigned int site) const
+    {
+      return assembler_.distance(state_, site);
+    }
+    std::array<double, 2> slip(const unsigned int site) const
+    {
+      return assembler_.slip(state_, site);
+    }
     /// Jump of the displacement at the last gather().
     std::vector<Vector3> displacement_jumps() const;
 
     /// Closed sites of all ranks.
     unsigned int n_closed() const;
-    /// Largest difference of two displacements at a surface node, and where it is.
-    double largest_difference(const Vector &a, const Vector &b, std::string *worst = nullptr) const;
     /// Where the first of the sites is that the ranks name; an invalid number names none.
     std::string locus(unsigned int site) const;
     /// Where the first @p n of the @p sites of all ranks are, owned ones.

@@ -15,8 +15,6 @@ namespace Nodus
   {
     /// Thresholds below this fraction of the largest count as frictionless: their friction rows would be singular.
     constexpr double relative_threshold_floor = 1e-6;
-
-    using ContactLaw = ContactPairParameters::ContactLaw;
   } // namespace
 
   /// Eq. L2.
@@ -53,7 +51,7 @@ namespace Nodus
     note_friction();
     now_.threshold = thresholds_at(site_pressure);
     for (unsigned int k = 0; k < site_pressure.size(); ++k)
-      threshold_slope_[k] = limits_[surfaces_.pair(k)].slope(site_pressure[k], factor(k));
+      threshold_slope_[k] = limits_[surfaces_.pair(k)].slope(site_pressure[k], now_.friction_factor[k]);
     update_floor();
   }
 
@@ -61,7 +59,7 @@ namespace Nodus
   {
     std::vector<double> thresholds;
     for (unsigned int k = 0; k < site_pressure.size(); ++k)
-      thresholds.push_back(limits_[surfaces_.pair(k)].threshold(site_pressure[k], factor(k)));
+      thresholds.push_back(limits_[surfaces_.pair(k)].threshold(site_pressure[k], now_.friction_factor[k]));
     return thresholds;
   }
 
@@ -102,14 +100,5 @@ namespace Nodus
       floor         = std::max(floor, -relative_threshold_floor * now_.threshold[k]);
     }
     dealii::Utilities::MPI::max(threshold_floor_, surfaces_.layout().communicator, threshold_floor_);
-  }
-
-  void Status::set_friction_fraction(const double fraction)
-  {
-    if (friction_fraction_ == 0. && fraction > 0.)
-      for (unsigned int k = 0; k < now_.stick.size(); ++k)
-        if (pairs_[surfaces_.pair(k)].contact_law != ContactLaw::tied)
-          now_.stick[k] = false;
-    friction_fraction_ = fraction;
   }
 } // namespace Nodus

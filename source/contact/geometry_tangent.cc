@@ -1,5 +1,5 @@
 #include "contact/geometry_tangent.h"
-#include "contact/face_rule.h"
+#include "contact/varied_faces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -64,106 +64,11 @@ namespace Nodus
     }
   }
 
-  /// The face variations that the sites at hand need: made when the first site asks, dropped after the last one.
-  class GeometryTangent::Faces
-  {
-  public:
-    Faces(const GeometryTangent &tangent, const std::vector<char> &active)
-        : tangent_(tangent)
-        , X_(tangent.surfaces_.positions(std::vector<Vector3>(tangent.surfaces_.nodes().size())))
-        , of_site_(tangent.surfaces_.n_owned_slave_nodes())
-    {
-      for (const AveragedJump::Face &face : tangent.averaged_.faces())
-        note(face, active);
-      find_foreign(active);
-    }
-
-    /// Calls f(variation, number of the site among the slave nodes of the face) for the faces around a site.
-    template <typename Function>
-    void for_each(const unsigned int site, const Function &f)
-    {
-      for (const unsigned int i : of_site_[site])
-      {
-        Around &around = faces_[i];
-        if (!around.variation)
-        {
-          const unsigned int p       = around.face->pair;
-          const auto        &pair    = tangent_.pairs_[p];
-          const bool         current = pair.surface_measure == ContactPairParameters::SurfaceMeasure::current;
-          around.variation           = std::make_unique<FaceVariation>(tangent_.geometry_,
-                                                             tangent_.sources_,
-                                                             *around.face,
-                                                             current ? tangent_.geometry_.slave[p].positions() : X_,
-                                                             current);
-        }
-        const auto &slaves = tangent_.surfaces_.slave_faces(around.face->pair)[around.face->face].slaves;
-        f(*around.variation, std::find(slaves.begin(), slaves.end(), site) - slaves.begin());
-      }
-    }
-    void done(const unsigned int site)
-    {
-      for (const unsigned int i : of_site_[site])
-        if (--faces_[i].wanted == 0)
-          faces_[i].variation.reset();
-    }
-
-  private:
-    struct Around
-    {
-      const AveragedJump::Face      *face;
-      unsigned int                   wanted;
-      std::unique_ptr<FaceVariation> variation;
-    };
-
-    void note(const AveragedJump::Face &face, const std::vector<char> &active)
-    {
-      unsigned int wanted = 0;
-      for (const unsigned int k : tangent_.surfaces_.slave_faces(face.pair)[face.face].slaves)
-        if (k < of_site_.size() && active[k])
-        {
-          of_site_[k].push_back(faces_.size());
-          ++wanted;
-        }
-      if (wanted > 0)
-        faces_.push_back({&face, wanted, nullptr});
-    }
-
-    /// Faces of other ranks at sites of this one: their masters are here, too.
-    void find_foreign(const std::vector<char> &active)
-    {
-      const ContactSurfaces &surfaces = tangent_.surfaces_;
-      const unsigned int     rank     = dealii::Utilities::MPI::this_mpi_process(surfaces.layout().communicator);
-      for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
-        if (tangent_.pairs_[p].scheme == ContactPairParameters::Scheme::averaged)
-        {
-          const auto rule = face_rule(tangent_.pairs_[p], surfaces.degree());
-          for (unsigned int f = 0; f < surfaces.slave_faces(p).size(); ++f)
-          {
-            const SurfaceFace &face = surfaces.slave_faces(p)[f];
-            if (face.owner == rank ||
-                std::none_of(face.slaves.begin(),
-                             face.slaves.end(),
-                             [&](const unsigned int k) { return k < of_site_.size() && active[k]; }))
-              continue;
-            foreign_.push_back(std::make_unique<AveragedJump::Face>(AveragedJump::Face{p, f, {}, {}, 0.}));
-            AveragedJump::find_points(tangent_.pairs_[p], tangent_.geometry_, rule, *foreign_.back());
-            note(*foreign_.back(), active);
-          }
-        }
-    }
-
-    const GeometryTangent                           &tangent_;
-    std::vector<Point>                               X_;
-    std::vector<std::vector<unsigned int>>           of_site_;
-    std::vector<Around>                              faces_;
-    std::vector<std::unique_ptr<AveragedJump::Face>> foreign_;
-  };
-
   void GeometryTangent::vary(const unsigned int     site,
                              const ContactState    &state,
                              const ContactResidual &residual,
                              const bool             follows,
-                             Faces                 &faces,
+                             VariedFaces           &faces,
                              SiteVariation         &variation,
                              GeometryCouplings     &couplings) const
   {
@@ -408,7 +313,7 @@ namespace Nodus
       active[s] = surfaces_.is_owned(s) && pairing_[s].found && residual.jump[s].norm_square() > 0. &&
                   (averages(s) || geometry_.rigid[surfaces_.pair(s)] != nullptr || pairing_[s].master.found());
     const bool        follows = !system.symmetric;
-    Faces             faces(*this, active);
+    VariedFaces       faces(pairs_, surfaces_, geometry_, averaged_, sources_, active);
     SiteVariation     variation(surfaces_.nodes().size(), sources_.size());
     GeometryCouplings couplings(surfaces_, sources_);
     for (unsigned int s = 0; s < active.size(); ++s)

@@ -6,12 +6,13 @@
 #include "contact/site_variation.h"
 
 #include <array>
-#include <memory>
 #include <utility>
 #include <vector>
 
 namespace Nodus
 {
+  class VariedFaces;
+
   /// What the contact terms gain in the tangent when pairing, areas and frames follow the surfaces (eq. G11-G17). With
   /// the jump [[x]] = G x + offset of a site, its normal n, its area m, and r, minus the force on the slave, these are
   ///
@@ -72,13 +73,11 @@ namespace Nodus
     void
     add_rigid_slide(unsigned int site, const Motion &motion, unsigned int coordinate, SiteVariation &variation) const;
 
-    /// Faces of the averaged scheme around the sites, as long as they are wanted.
-    class Faces;
     void vary(unsigned int           site,
               const ContactState    &state,
               const ContactResidual &residual,
               bool                   follows,
-              Faces                 &faces,
+              VariedFaces           &faces,
               SiteVariation         &variation,
               GeometryCouplings     &couplings) const;
     void couple(unsigned int           site,

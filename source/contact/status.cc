@@ -63,13 +63,14 @@ namespace Nodus
       const double       size  = surfaces_.face_size(p);
       const bool         lasts = pair.contact_law != ContactLaw::unilateral; // closed for good
       double             reach = initial_gap * size;
-      if (lasts || pair.initial_overclosure == Overclosure::adjust)
-        reach =
-            std::max(reach, lasts && pair.adjustment_distance == 0. ? tying_distance * size : pair.adjustment_distance);
+      if (lasts || pair.start.overclosure == Overclosure::adjust)
+        reach = std::max(reach,
+                         lasts && pair.start.adjustment_distance == 0. ? tying_distance * size
+                                                                       : pair.start.adjustment_distance);
       const bool near = -distance[k] <= reach && (pair.contact_law != ContactLaw::tied || distance[k] <= reach);
-      now_.contact[k] = pair.initial_status == Initial::closed || (pair.initial_status == Initial::by_gap && near);
-      if ((lasts && now_.contact[k]) || (pair.initial_overclosure == Overclosure::adjust && near) ||
-          (pair.initial_overclosure == Overclosure::interference && distance[k] > 0.))
+      now_.contact[k] = pair.start.status == Initial::closed || (pair.start.status == Initial::by_gap && near);
+      if ((lasts && now_.contact[k]) || (pair.start.overclosure == Overclosure::adjust && near) ||
+          (pair.start.overclosure == Overclosure::interference && distance[k] > 0.))
         now_.adjustment[k] = distance[k];
     }
     surfaces_.site_exchange().update(now_.contact);
@@ -247,7 +248,7 @@ namespace Nodus
     {
       const unsigned int p         = surfaces_.pair(k);
       const double       value     = input.pressure[k] - normal_augmentation(k) * input.distance[k];
-      const double       threshold = limits_[p].threshold(value, factor(k));
+      const double       threshold = limits_[p].threshold(value, now_.friction_factor[k]);
       return pairs_[p].tangential_augmentation_factor * normal_augmentation(k) *
                  std::hypot(input.slip[k][0], input.slip[k][1]) <=
              -threshold;

@@ -185,10 +185,6 @@ namespace Nodus
       resolved_ = part;
     }
 
-    /// Part of the friction limits that is in force, 0 to 1: 1 but for the way to a first iterate. As it grows from 0,
-    /// all closed sites slip, in the direction that they moved in without friction.
-    void set_friction_fraction(double fraction);
-
     /// Statuses forget which vectors this loop has visited. @p merged: updates follow single Newton iterations.
     void begin_loop(bool merged = false);
     struct Update
@@ -260,11 +256,7 @@ namespace Nodus
     }
     bool interferes(const unsigned int pair) const
     {
-      return pairs_[pair].initial_overclosure == ContactPairParameters::InitialOverclosure::interference;
-    }
-    double factor(const unsigned int site) const
-    {
-      return friction_fraction_ * now_.friction_factor[site];
+      return pairs_[pair].start.overclosure == ContactPairParameters::InitialOverclosure::interference;
     }
     bool              can_project(unsigned int pair) const;
     bool              can_lump(unsigned int pair) const;
@@ -286,7 +278,7 @@ namespace Nodus
     State                                    &now_;
     std::vector<double>                       threshold_slope_; ///< of the sites
     std::vector<double>                       threshold_floor_; ///< of the pairs
-    double                                    resolved_ = 0., friction_fraction_ = 1.;
+    double                                    resolved_ = 0.;
     std::vector<StatusLedger>                 ledger_;
     std::vector<std::vector<char>>            visited_;
     std::vector<char>                         opened_; ///< in this status loop

@@ -1,20 +1,18 @@
 #include "output/vtu.h"
 #include "base/complete_file.h"
 #include "bulk/nodal_stress.h"
+#include "output/vtu_patches.h"
 
-#include <deal.II/base/data_out_base.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/utilities.h>
 #include <deal.II/fe/fe_tools.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/fe_values_extractors.h>
-#include <deal.II/grid/reference_cell.h>
 #include <deal.II/lac/trilinos_vector.h>
 
 #include <array>
 #include <cmath>
 #include <map>
-#include <tuple>
 
 namespace Nodus
 {
@@ -22,142 +20,33 @@ namespace Nodus
 
   namespace
   {
-    /// Rows of a patch's data table, in groups of 1 (scalar), 3 (vector) or 9 (tensor).
-    struct Field
-    {
-      std::string  name;
-      unsigned int components;
-    };
-
-    /// Cells or faces with values at their nodes. Both are filled by hand: the nodes of the deformed configuration
-    /// are then exactly where the solution has them, and stresses and contact fields stay nodal values. deal.II has no
-    /// reader-ready output of a field that lives on a part of the boundary only.
-    template <int patch_dim>
-    class Output : public DataOutInterface<patch_dim, dim>
-    {
-    public:
-      using Patch = DataOutBase::Patch<patch_dim, dim>;
-
-      Output(const std::vector<Field> &fields, const unsigned int degree, const double t)
-      {
-        using namespace DataComponentInterpretation;
-        for (const auto &field : fields)
-        {
-          const unsigned int first = names_.size();
-          for (unsigned int c = 0; c < field.components; ++c)
-            names_.push_back(field.components == 1 ? field.name : field.name + '_' + std::to_string(c));
-          if (field.components > 1)
-            ranges_.emplace_back(first,
-                                 first + field.components - 1,
-                                 field.name,
-                                 field.components == dim ? component_is_part_of_vector : component_is_part_of_tensor);
-        }
-        DataOutBase::VtkFlags flags;
-        flags.time                     = t;
-        flags.print_date_and_time      = false; // equal runs give equal files
-        flags.write_higher_order_cells = degree > 1;
-        flags.compression_level        = DataOutBase::VtkFlags::best_speed;
-        this->set_flags(flags);
-      }
-
-      unsigned int n_values() const
-      {
-        return names_.size();
-      }
-
-      /// A patch of the given degree; the last three rows of its data are the coordinates of the nodes.
-      Patch &add_patch(const unsigned int degree)
-      {
-        patches_.emplace_back();
-        Patch &patch               = patches_.back();
-        patch.patch_index          = patches_.size() - 1;
-        patch.n_subdivisions       = degree;
-        patch.reference_cell       = ReferenceCells::get_hypercube<patch_dim>();
-        patch.points_are_available = true;
-        patch.data.reinit(n_values() + dim, Utilities::fixed_power<patch_dim>(degree + 1));
-        return patch;
-      }
-
-    private:
-      const std::vector<Patch> &get_patches() const override
-      {
-        return patches_;
-      }
-      std::vector<std::string> get_dataset_names() const override
-      {
-        return names_;
-      }
-      std::vector<
-          std::tuple<unsigned int, unsigned int, std::string, DataComponentInterpretation::DataComponentInterpretation>>
-      get_nonscalar_data_ranges() const override
-      {
-        return ranges_;
-      }
-
-      std::vector<Patch>       patches_;
-      std::vector<std::string> names_;
-      std::vector<
-          std::tuple<unsigned int, unsigned int, std::string, DataComponentInterpretation::DataComponentInterpretation>>
-          ranges_;
-    };
-
-    /// Fills one column of a patch's data table row by row, in the order of the fields.
-    class Column
-    {
-    public:
-      Column(Table<2, float> &data, const unsigned int column)
-          : data_(data)
-          , column_(column)
-      {
-      }
-      Column &operator<<(const double value)
-      {
-        data_(row_++, column_) = value;
-        return *this;
-      }
-      Column &operator<<(const Tensor<1, dim> &v)
-      {
-        return *this << v[0] << v[1] << v[2];
-      }
-      Column &operator<<(const SymmetricTensor<2, dim> &T)
-      {
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int j = 0; j < dim; ++j)
-            *this << T[i][j];
-        return *this;
-      }
-
-    private:
-      Table<2, float> &data_;
-      unsigned int     column_, row_ = 0;
-    };
-
     /// @param plastic some body has an equivalent plastic strain
-    std::vector<Field> body_fields(const bool plastic)
+    std::vector<PatchField> body_fields(const bool plastic)
     {
-      std::vector<Field> fields = {{"displacement", dim}, {"cauchy_stress", dim * dim}, {"von_mises", 1}, {"body", 1}};
+      std::vector<PatchField> fields = {
+          {"displacement", dim}, {"cauchy_stress", dim * dim}, {"von_mises", 1}, {"body", 1}};
       if (plastic)
         fields.push_back({"PEEQ", 1});
       return fields;
     }
 
-    const std::vector<Field> contact_fields = {{"CPRESS", 1},
-                                               {"COPEN", 1},
-                                               {"CSHEAR1", 1},
-                                               {"CSHEAR2", 1},
-                                               {"CSLIP1", 1},
-                                               {"CSLIP2", 1},
-                                               {"CSTATUS", 1},
-                                               {"paired", 1},
-                                               {"pair", 1},
-                                               {"normal", dim},
-                                               {"tangent1", dim},
-                                               {"friction_traction", dim},
-                                               {"displacement", dim},
-                                               {"area", 1},
-                                               {"status_changes", 1},
-                                               {"cycle_period", 1},
-                                               {"contradiction", 1}};
+    const std::vector<PatchField> contact_fields = {{"CPRESS", 1},
+                                                    {"COPEN", 1},
+                                                    {"CSHEAR1", 1},
+                                                    {"CSHEAR2", 1},
+                                                    {"CSLIP1", 1},
+                                                    {"CSLIP2", 1},
+                                                    {"CSTATUS", 1},
+                                                    {"paired", 1},
+                                                    {"pair", 1},
+                                                    {"normal", dim},
+                                                    {"tangent1", dim},
+                                                    {"friction_traction", dim},
+                                                    {"displacement", dim},
+                                                    {"area", 1},
+                                                    {"status_changes", 1},
+                                                    {"cycle_period", 1},
+                                                    {"contradiction", 1}};
 
     /// A file that @p write fills, complete or not at all. @returns what went wrong.
     template <typename Write>
@@ -197,25 +86,25 @@ namespace Nodus
     Series written = {};
 
     template <typename Function>
-    void        for_nodes(const Vector &u, Output<dim> &output, const Function &f) const;
-    void        add_bodies(const Vector &u, Output<dim> &output) const;
-    void        add_contact(const std::vector<ContactFields> &contact, Output<dim - 1> &output) const;
+    void        for_nodes(const Vector &u, PatchOutput<dim> &output, const Function &f) const;
+    void        add_bodies(const Vector &u, PatchOutput<dim> &output) const;
+    void        add_contact(const std::vector<ContactFields> &contact, PatchOutput<dim - 1> &output) const;
     void        add_state(const Vector                  &u,
                           const std::vector<NodalField> &fields,
                           const std::vector<float>      &det_F,
-                          Output<dim>                   &output) const;
+                          PatchOutput<dim>              &output) const;
     std::string main_file(const std::string &stem) const;
     template <int patch_dim>
-    void write_pieces(const std::string &stem, const Output<patch_dim> &output) const;
+    void write_pieces(const std::string &stem, const PatchOutput<patch_dim> &output) const;
     template <int patch_dim>
-    void        write(const std::string &series, unsigned int increment, double t, const Output<patch_dim> &output);
+    void write(const std::string &series, unsigned int increment, double t, const PatchOutput<patch_dim> &output);
     std::string write_record(const std::string &series) const;
   };
 
   /// Calls f(cell, patch, node, j, dofs of the node) for the nodes of the owned cells, in the order of the patch, and
   /// adds their positions at displacement @p u.
   template <typename Function>
-  void VtuOutput::Implementation::for_nodes(const Vector &u, Output<dim> &output, const Function &f) const
+  void VtuOutput::Implementation::for_nodes(const Vector &u, PatchOutput<dim> &output, const Function &f) const
   {
     const auto        &fe      = dof_handler.get_fe();
     const auto         to_node = FETools::lexicographic_to_hierarchic_numbering<dim>(degree);
@@ -241,7 +130,7 @@ namespace Nodus
             node_dofs[c] = dofs[fe.component_to_system_index(c, to_node[j])];
             u_j[c]       = u(node_dofs[c]);
           }
-          Column column(patch.data, j);
+          PatchColumn column(patch.data, j);
           column << u_j;
           f(cell, node_dofs, column);
           column << nodes.quadrature_point(j) + u_j;
@@ -249,12 +138,12 @@ namespace Nodus
       }
   }
 
-  void VtuOutput::Implementation::add_bodies(const Vector &u, Output<dim> &output) const
+  void VtuOutput::Implementation::add_bodies(const Vector &u, PatchOutput<dim> &output) const
   {
     const NodalStress values(dof_handler, mapping, solid, u);
     for_nodes(u,
               output,
-              [&](const auto &cell, const auto &dofs, Column &column)
+              [&](const auto &cell, const auto &dofs, PatchColumn &column)
               {
                 const SymmetricTensor<2, dim> sigma = values.stress(dofs[0]);
                 column << sigma << von_mises(sigma) << cell->material_id() + 1.;
@@ -266,11 +155,11 @@ namespace Nodus
   void VtuOutput::Implementation::add_state(const Vector                  &u,
                                             const std::vector<NodalField> &fields,
                                             const std::vector<float>      &det_F,
-                                            Output<dim>                   &output) const
+                                            PatchOutput<dim>              &output) const
   {
     for_nodes(u,
               output,
-              [&](const auto &cell, const auto &dofs, Column &column)
+              [&](const auto &cell, const auto &dofs, PatchColumn &column)
               {
                 column << cell->material_id() + 1. << det_F[cell->active_cell_index()];
                 for (const NodalField &field : fields)
@@ -279,7 +168,8 @@ namespace Nodus
               });
   }
 
-  void VtuOutput::Implementation::add_contact(const std::vector<ContactFields> &contact, Output<dim - 1> &output) const
+  void VtuOutput::Implementation::add_contact(const std::vector<ContactFields> &contact,
+                                              PatchOutput<dim - 1>             &output) const
   {
     for (unsigned int p = 0; p < contact.size(); ++p)
       for (const auto &face : contact[p].faces)
@@ -289,11 +179,11 @@ namespace Nodus
         for (unsigned int j = 0; j < face.size(); ++j)
         {
           const unsigned int k = face[j];
-          Column(patch.data, j) << c.pressure[k] << c.gap[k] << c.shear[0][k] << c.shear[1][k] << c.slip[0][k]
-                                << c.slip[1][k] << static_cast<unsigned int>(c.status[k]) << c.paired[k] << p + 1.
-                                << c.normal[k] << c.tangent1[k] << c.friction[k] << c.displacement[k] << c.area[k]
-                                << c.status_changes[k] << c.cycle_period[k] << int(c.contradiction[k])
-                                << c.X[k] + c.displacement[k];
+          PatchColumn(patch.data, j) << c.pressure[k] << c.gap[k] << c.shear[0][k] << c.shear[1][k] << c.slip[0][k]
+                                     << c.slip[1][k] << static_cast<unsigned int>(c.status[k]) << c.paired[k] << p + 1.
+                                     << c.normal[k] << c.tangent1[k] << c.friction[k] << c.displacement[k] << c.area[k]
+                                     << c.status_changes[k] << c.cycle_period[k] << int(c.contradiction[k])
+                                     << c.X[k] + c.displacement[k];
         }
       }
   }
@@ -306,7 +196,7 @@ namespace Nodus
   /// One piece per rank (deal.II 9.4 distorts second-order cells when pieces share a file), then the record of the
   /// pieces.
   template <int patch_dim>
-  void VtuOutput::Implementation::write_pieces(const std::string &stem, const Output<patch_dim> &output) const
+  void VtuOutput::Implementation::write_pieces(const std::string &stem, const PatchOutput<patch_dim> &output) const
   {
     const auto piece = [&](const unsigned int r)
     { return stem + (n_ranks == 1 ? "" : '.' + Utilities::int_to_string(r, 4)) + ".vtu"; };
@@ -327,10 +217,10 @@ namespace Nodus
 
   /// The pieces before the time series: whoever finds a file finds everything that it refers to.
   template <int patch_dim>
-  void VtuOutput::Implementation::write(const std::string       &series,
-                                        const unsigned int       increment,
-                                        const double             t,
-                                        const Output<patch_dim> &output)
+  void VtuOutput::Implementation::write(const std::string            &series,
+                                        const unsigned int            increment,
+                                        const double                  t,
+                                        const PatchOutput<patch_dim> &output)
   {
     const std::string stem = series + '_' + Utilities::int_to_string(increment, 4);
     write_pieces(stem, output);
@@ -378,13 +268,13 @@ namespace Nodus
                         const Vector                     &u,
                         const std::vector<ContactFields> &contact)
   {
-    Output<dim> body_output(body_fields(implementation_->solid.has_history()), implementation_->degree, t);
+    PatchOutput<dim> body_output(body_fields(implementation_->solid.has_history()), implementation_->degree, t);
     implementation_->add_bodies(u, body_output);
     implementation_->write("bodies", increment, t, body_output);
 
     if (!contact.empty())
     {
-      Output<dim - 1> contact_output(contact_fields, implementation_->degree, t);
+      PatchOutput<dim - 1> contact_output(contact_fields, implementation_->degree, t);
       implementation_->add_contact(contact, contact_output);
       implementation_->write("contact", increment, t, contact_output);
     }
@@ -396,11 +286,11 @@ namespace Nodus
                               const std::vector<NodalField> &fields,
                               const std::vector<float>      &det_F)
   {
-    std::vector<Field> columns = {{"displacement", dim}, {"body", 1}, {"det_F", 1}};
+    std::vector<PatchField> columns = {{"displacement", dim}, {"body", 1}, {"det_F", 1}};
     for (const NodalField &field : fields)
       for (const std::string &column : field.names)
         columns.push_back({column, field.names.size() == 1 ? dim : 1});
-    Output<dim> output(columns, implementation_->degree, t);
+    PatchOutput<dim> output(columns, implementation_->degree, t);
     implementation_->add_state(u, fields, det_F, output);
     implementation_->write_pieces(name, output);
   }

@@ -82,13 +82,13 @@ namespace Nodus
            {std::make_pair("Friction coefficient", coulomb),
             std::make_pair("Shear limit", pair.shear_limit > 0.),
             std::make_pair("Initial overclosure",
-                           pair.initial_overclosure != ContactPairParameters::InitialOverclosure::resolve)})
+                           pair.start.overclosure != ContactPairParameters::InitialOverclosure::resolve)})
         section.require(!tied || !given, key, "has no effect on a tied pair; remove it");
       section.require(pair.contact_law == ContactPairParameters::ContactLaw::unilateral ||
-                          pair.initial_overclosure == ContactPairParameters::InitialOverclosure::resolve,
+                          pair.start.overclosure == ContactPairParameters::InitialOverclosure::resolve,
                       "Initial overclosure",
                       "has no effect on a bilateral pair, which is always adjusted; remove it");
-      section.require(!tied || pair.initial_status != ContactPairParameters::InitialStatus::open,
+      section.require(!tied || pair.start.status != ContactPairParameters::InitialStatus::open,
                       "Initial status",
                       "is open, but a tied pair never closes later; remove it");
       if (pair.friction_law == ContactPairParameters::FrictionLaw::tresca)
@@ -177,8 +177,8 @@ namespace Nodus
   {
     check_friction(section, pair);
     const bool adjusts = pair.contact_law != ContactPairParameters::ContactLaw::unilateral ||
-                         pair.initial_overclosure == ContactPairParameters::InitialOverclosure::adjust;
-    section.require(adjusts || pair.adjustment_distance == 0.,
+                         pair.start.overclosure == ContactPairParameters::InitialOverclosure::adjust;
+    section.require(adjusts || pair.start.adjustment_distance == 0.,
                     "Adjustment distance",
                     "has no effect; set 'Initial overclosure = strain-free adjust', or remove it");
     check(section, pair.slave, "Slave ", n_bodies, 1);

@@ -308,23 +308,23 @@ namespace Nodus
     {
       add_choice(prm,
                  "Initial status",
-                 pair.initial_status,
+                 pair.start.status,
                  initial_status_names,
                  "Status of the slave nodes at the start [-].");
       add_choice(prm,
                  "Initial overclosure",
-                 pair.initial_overclosure,
+                 pair.start.overclosure,
                  overclosure_names,
                  "What happens to slave nodes that start inside the master [-]: they are pushed out in the first "
                  "increment; or stay where they are, free of stress; or are pushed out in the course of the first "
                  "interval of the load path. Tied and bilateral pairs stay where they are.");
       prm.add_parameter("Adjustment distance",
-                        pair.adjustment_distance,
+                        pair.start.adjustment_distance,
                         "Gaps up to this, too, start closed and free of stress, if overclosures stay [length]; tied "
                         "and bilateral pairs, 0: a tenth of the mean slave face.",
                         not_negative);
       prm.add_parameter("Overclosure limit",
-                        pair.overclosure_limit,
+                        pair.start.overclosure_limit,
                         "A run with a larger initial overclosure is refused [length]; 0: half of the mean slave face.",
                         not_negative);
     }

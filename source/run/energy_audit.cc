@@ -1,4 +1,5 @@
 #include "run/energy_audit.h"
+#include "contact/loci.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -166,9 +167,9 @@ namespace Nodus
                               contact.loci(creating, 1).front() +
                               ": its force does not oppose the slip there; see energy.csv, and try smaller increments");
     const double imbalance = std::abs(increment.imbalance());
-    const double motion =
-        std::max(contact.largest_difference(states_.now.unknowns.block(0), states_.committed.unknowns.block(0)),
-                 model_.length_scale);
+    const double motion    = std::max(
+        largest_difference(contact.surfaces(), states_.now.unknowns.block(0), states_.committed.unknowns.block(0)),
+        model_.length_scale);
     const double negligible =
         beyond_tolerance * model_.parameters.newton.force_tolerance * equilibrium_.forces().scale * motion;
     if (imbalance > large_imbalance * increment.throughput() && imbalance > small_part * energies.throughput() &&

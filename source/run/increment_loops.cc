@@ -1,4 +1,5 @@
 #include "run/increment_loops.h"
+#include "contact/loci.h"
 
 #include <deal.II/base/utilities.h>
 
@@ -9,7 +10,7 @@ namespace Nodus
 {
   namespace
   {
-    /// Newton iterations without progress after which a merged iteration is given up.
+    /// Newton iterations without progress after which it is given up.
     constexpr unsigned int patience = 8;
     /// Of a Newton step into inverted cells.
     constexpr unsigned int maximum_halvings = 5;
@@ -35,13 +36,12 @@ namespace Nodus
   {
   }
 
-  void IncrementLoops::solve(const bool first_iterate)
+  void IncrementLoops::solve()
   {
     const MergedLoops &merged  = equilibrium_.merged();
     ContactInterface  &contact = *model_.contact;
     equilibrium_.begin_loops();
-    const Newton newton(
-        model_.parameters.newton, merged.any() ? patience : 0, uses(Remedy::shorter_step) ? maximum_halvings : 0);
+    const Newton newton(model_.parameters.newton, patience, uses(Remedy::shorter_step) ? maximum_halvings : 0);
 
     FixedPointLoop geometry("geometry", model_.parameters.geometry_loop);
     AndersonMixing mixing(model_.communicator);
@@ -68,7 +68,7 @@ namespace Nodus
           iterate(newton);
         } while (!statuses_converged(statuses));
       } while (!threshold_converged(threshold, threshold_mixing));
-    } while (!geometry_converged(geometry, mixing, merged.geometry || first_iterate));
+    } while (!geometry_converged(geometry, mixing));
     if (!merged.status)
       check_frozen_statuses();
   }
@@ -184,18 +184,18 @@ namespace Nodus
   }
 
   /// Eqs. L1 and L3.
-  bool IncrementLoops::geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing, const bool once)
+  bool IncrementLoops::geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing)
   {
     ++journal_.counts.geometry;
-    if (once)
+    if (equilibrium_.merged().geometry)
       return true;
-    const auto              timer   = journal_.profile.time(Phase::pairing);
-    const ContactInterface &contact = *model_.contact;
-    Vector                 &u       = states_.now.unknowns.block(0);
-    std::string             worst;
-    const double            change = contact.largest_difference(u, paired_, &worst);
-    const double            step   = contact.largest_difference(paired_, states_.committed.unknowns.block(0));
-    const double            value  = change <= 1e-12 * model_.length_scale ? 0. : step > 0. ? change / step : 1.;
+    const auto             timer    = journal_.profile.time(Phase::pairing);
+    const ContactSurfaces &surfaces = model_.contact->surfaces();
+    Vector                &u        = states_.now.unknowns.block(0);
+    std::string            worst;
+    const double           change = largest_difference(surfaces, u, paired_, &worst);
+    const double           step   = largest_difference(surfaces, paired_, states_.committed.unknowns.block(0));
+    const double           value  = change <= 1e-12 * model_.length_scale ? 0. : step > 0. ? change / step : 1.;
 
     std::ostringstream text;
     text << "geometry changes by " << value << " of the step, most at " << worst;
@@ -207,7 +207,7 @@ namespace Nodus
 
     // The solution of two passes ago again, while it differs from that of the last one: a 2-cycle; one that comes back
     // is no fixed point.
-    const bool cycle = loop.counter() >= 3 && contact.largest_difference(u, paired_before_) <= 1e-6 * change;
+    const bool cycle = loop.counter() >= 3 && largest_difference(surfaces, u, paired_before_) <= 1e-6 * change;
     if (cycle && ++geometry_cycles_ > tolerated_geometry_cycles)
       throw SolverFailure(
           "the geometry loop cycles with period 2, criterion " + std::to_string(value) + ", worst at " + worst +

@@ -18,15 +18,13 @@ namespace Nodus
     IncrementLoops(
         Model &model, Journal &journal, States &states, Equilibrium &equilibrium, std::function<void()> heed_signals);
 
-    /// Solves from the state at hand, with the loops merged as Equilibrium::begin_attempt() said. @p first_iterate: the
-    /// solution is not that of the increment (friction continuation), one geometry pass will do. @throws SolverFailure
-    void solve(bool first_iterate = false);
+    /// Solves from the state at hand, with the loops merged as Equilibrium::begin_attempt() said. @throws SolverFailure
+    void solve();
 
   private:
-    void pair();
-    void iterate(const Newton &newton);
-    /// @p once: further passes are of no use.
-    bool                geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing, bool once);
+    void                pair();
+    void                iterate(const Newton &newton);
+    bool                geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing);
     bool                threshold_converged(FixedPointLoop &loop, AndersonMixing &mixing);
     bool                statuses_converged(FixedPointLoop &loop);
     void                check_frozen_statuses();

@@ -114,15 +114,10 @@ namespace Nodus
     stabilisation->set_increment(increment.begin, increment.end, increment.interval_begin, increment.interval_end);
   }
 
-  void Model::return_to(const State &state, States &states)
-  {
-    states.now = state;
-    contact->resume(states.now.unknowns, states.committed.unknowns.block(0));
-  }
-
   void Model::roll_back(States &states)
   {
-    return_to(states.committed, states);
+    states.now = states.committed;
+    contact->resume(states.now.unknowns, states.now.unknowns.block(0));
     solid->start_from(states.now.history);
   }
 

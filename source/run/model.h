@@ -32,9 +32,7 @@ namespace Nodus
     void set_up_mesh(State &now);
     /// The conditions of @p increment: prescribed displacements, loads, rigid motions, stabilisation. Collective.
     void impose(const Increment &increment);
-    /// @p states: the state at hand becomes @p state, one of the same mesh. What refers to it follows. Collective.
-    void return_to(const State &state, States &states);
-    /// The state at hand becomes the one that the increment began with. Collective.
+    /// The state at hand becomes the one that the increment began with, and what refers to it follows. Collective.
     void roll_back(States &states);
 
     /// Young's modulus of the softer side of each pair.

@@ -13,8 +13,8 @@
 
 namespace Nodus
 {
-  /// Every number that history is made of, on the mesh at hand. Assignment is commit, roll-back and the way back of the
-  /// friction continuation; visit_members() is what checkpoints and new meshes take over.
+  /// Every number that history is made of, on the mesh at hand. Assignment is commit and roll-back;
+  /// visit_members() is what checkpoints and new meshes take over.
   struct State
   {
     BlockVector                     unknowns; ///< (u, lambda, Lambda)

@@ -1,5 +1,4 @@
 #include "run/strategy.h"
-#include "run/friction_continuation.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -12,7 +11,6 @@
 // |----------------|----------------------------------------------|-------------------------------------|
 // | increment      | the attempts of the ladder below             | Strategy::ladder                    |
 // | increment      | halves                                       | LoadPath::solve                     |
-// | attempt        | friction grows from nothing, steps halve     | continue_in_friction                |
 // | geometry loop  | slow passes are mixed                        | IncrementLoops::geometry_converged  |
 // | threshold loop | slow passes are mixed                        | IncrementLoops::threshold_converged |
 // | statuses cycle | regularised law; one site at a time; frozen  | Status::find_period                 |
@@ -30,7 +28,7 @@ namespace Nodus
   {
   }
 
-  std::vector<Strategy::Attempt> Strategy::ladder(const bool on_new_mesh) const
+  std::vector<Strategy::Attempt> Strategy::ladder() const
   {
     using Mode                      = LoopParameters::Mode;
     using Kind                      = SolverFailure::Kind;
@@ -39,40 +37,20 @@ namespace Nodus
     const MergedLoops       asked   = {p.geometry_loop.mode == Mode::newton,
                                        p.threshold_loop.mode == Mode::newton && contact.has_friction(),
                                        p.status_loop.mode == Mode::newton};
-    const MergedLoops       inner   = {false, asked.threshold, asked.status};
     const MergedLoops       coupled = {false, true, false}, none;
-    const bool              slides  = contact.slides() && !on_new_mesh; // there friction has grown already
     const bool              frozen  = p.threshold_loop.mode != Mode::newton && contact.threshold_follows_pressure();
 
-    // name, what is merged, whether friction grows, what it counts as, what it answers: kinds of failure of the attempt
-    // before after which it has ever helped (contrib/studies/robustness/README.md)
-    std::vector<Attempt> attempts = {{"the loops as they are asked for", asked, false, {}, {}}};
+    // name, what is merged, what it counts as, what it answers: kinds of failure of the attempt before after which it
+    // has ever helped (contrib/studies/robustness/README.md)
+    std::vector<Attempt> attempts = {{"the loops as they are asked for", asked, {}, {}}};
     const auto           add      = [&](const bool fits, const Attempt &attempt)
     {
       if (fits && model_.parameters.strategy.uses(*attempt.remedy))
         attempts.push_back(attempt);
     };
-    add(asked.geometry && inner.any(),
-        {"a geometry loop",
-         inner,
-         false,
-         Remedy::geometry_loop,
-         {Kind::newton_stalled, Kind::newton_limit, Kind::status_cycle}});
-    add(asked.status && slides,
-        {"a geometry loop and growing friction",
-         inner,
-         true,
-         Remedy::growing_friction,
-         {Kind::newton_stalled,
-          Kind::newton_limit,
-          Kind::status_cycle,
-          Kind::inverted_cell,
-          Kind::geometry_cycle,
-          Kind::loop_limit}});
     add(asked.any(),
         {"three loops",
          none,
-         false,
          Remedy::three_loops,
          {Kind::newton_stalled,
           Kind::newton_limit,
@@ -85,14 +63,17 @@ namespace Nodus
           Kind::over_constraint,
           Kind::linear_solver}});
     add(frozen,
-        {"the coupled threshold", coupled, false, Remedy::coupled_threshold, {Kind::newton_limit, Kind::loop_limit}});
+        {"the coupled threshold",
+         coupled,
+         Remedy::coupled_threshold,
+         {Kind::newton_stalled, Kind::newton_limit, Kind::loop_limit}});
     return attempts;
   }
 
   void Strategy::solve_increment()
   {
     journal_.counts                     = IterationCounts();
-    const std::vector<Attempt> attempts = ladder(equilibrium_.increment().on_new_mesh());
+    const std::vector<Attempt> attempts = ladder();
     for (auto attempt = attempts.begin();;)
       try
       {
@@ -122,11 +103,8 @@ namespace Nodus
   void Strategy::run(const Attempt &attempt)
   {
     equilibrium_.begin_attempt(attempt.merged);
-    journal_.diagnosis.begin_attempt(attempt.merged.names() + (attempt.friction_grows ? "; friction grows" : ""));
-    if (attempt.friction_grows)
-      continue_in_friction(model_, journal_, states_, loops_);
-    else
-      loops_.solve();
+    journal_.diagnosis.begin_attempt(attempt.merged.names());
+    loops_.solve();
   }
 
   bool Strategy::begins_singular() const

@@ -9,7 +9,7 @@
 namespace Nodus
 {
   /// The attempts at an increment (theory section 21.3), one after the other until one succeeds: which loops are merged
-  /// into Newton's iteration, and how it starts. Each starts from the state that the increment began with.
+  /// into Newton's iteration. Each starts from the state that the increment began with.
   class Strategy
   {
   public:
@@ -21,13 +21,12 @@ namespace Nodus
     {
       const char *name;
       MergedLoops merged;
-      bool        friction_grows; ///< it starts with the friction continuation
       /// What it is counted as, and the failures of attempts before it after which it is tried; none for the first one.
       std::optional<Remedy>            remedy;
       std::vector<SolverFailure::Kind> answers;
     };
     /// Those that are of use in the case at hand, in their order.
-    std::vector<Attempt> ladder(bool on_new_mesh) const;
+    std::vector<Attempt> ladder() const;
 
     /// Solves the increment that Equilibrium::begin_increment() was given. @throws SolverFailure of the last attempt,
     /// whose state is still at hand.

@@ -1,4 +1,5 @@
 #include "run/unheld_bodies.h"
+#include "contact/loci.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -107,8 +108,8 @@ namespace Nodus
     for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
       limit = std::min(limit, 0.5 * surfaces.face_size(p));
     std::string  worst;
-    const double moved =
-        model.contact->largest_difference(states.now.unknowns.block(0), states.committed.unknowns.block(0), &worst);
+    const double moved = largest_difference(
+        model.contact->surfaces(), states.now.unknowns.block(0), states.committed.unknowns.block(0), &worst);
     if (moved <= limit)
       return;
     std::ostringstream message;

@@ -52,19 +52,19 @@ namespace
   Parameters cube_on_block()
   {
     Parameters p;
-    p.bodies                          = {box("block", "4,4,2", {-0.5, -0.5, -1}, {1.5, 1.5, 0}, 1000., 0.3),
-                                         box("cube", "2,2,2", {0, 0, 0}, {1, 1, 1}, 1000., 0.3)};
-    p.boundary_conditions             = {hold("ground", region(1, {z_minus}), {0, 1, 2}),
-                                         drive("press", region(2, {z_plus}), 2, "-0.02*t"),
-                                         hold("guide", region(2, {z_plus}), {0, 1})};
-    p.contact_pairs                   = {pair(region(2, {z_minus}), region(1, {z_plus}))};
-    p.contact_pairs[0].scheme         = ContactPairParameters::Scheme::averaged;
-    p.contact_pairs[0].normal         = ContactPairParameters::Normal::averaged;
-    p.contact_pairs[0].initial_status = ContactPairParameters::InitialStatus::closed;
-    p.load_stepping.increments        = {2};
-    p.output.results_folder           = "criteria_results";
-    p.output.write_vtu                = false;
-    p.output.checkpoint_interval      = 0;
+    p.bodies                        = {box("block", "4,4,2", {-0.5, -0.5, -1}, {1.5, 1.5, 0}, 1000., 0.3),
+                                       box("cube", "2,2,2", {0, 0, 0}, {1, 1, 1}, 1000., 0.3)};
+    p.boundary_conditions           = {hold("ground", region(1, {z_minus}), {0, 1, 2}),
+                                       drive("press", region(2, {z_plus}), 2, "-0.02*t"),
+                                       hold("guide", region(2, {z_plus}), {0, 1})};
+    p.contact_pairs                 = {pair(region(2, {z_minus}), region(1, {z_plus}))};
+    p.contact_pairs[0].scheme       = ContactPairParameters::Scheme::averaged;
+    p.contact_pairs[0].normal       = ContactPairParameters::Normal::averaged;
+    p.contact_pairs[0].start.status = ContactPairParameters::InitialStatus::closed;
+    p.load_stepping.increments      = {2};
+    p.output.results_folder         = "criteria_results";
+    p.output.write_vtu              = false;
+    p.output.checkpoint_interval    = 0;
     return p;
   }
 
@@ -140,7 +140,7 @@ namespace
                                                drive("press", region(2, {z_plus}), 2, "-0.06*t")};
     p.contact_pairs                         = {pair(region(2, {z_minus}), region(1, {z_plus}))};
     p.contact_pairs[0].scheme               = ContactPairParameters::Scheme::averaged;
-    p.contact_pairs[0].initial_status       = ContactPairParameters::InitialStatus::closed;
+    p.contact_pairs[0].start.status         = ContactPairParameters::InitialStatus::closed;
     p.contact_pairs[0].projection_tolerance = 0.5; // the cube grows over the edge of the plate
     p.newton.force_tolerance                = 1e-10;
     p.load_stepping.increments              = {6};

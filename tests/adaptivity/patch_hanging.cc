@@ -31,7 +31,7 @@ namespace
     p.contact_pairs                    = {upper_is_slave ? pair(upper, lower) : pair(lower, upper)};
     p.contact_pairs[0].surface_measure = ContactPairParameters::SurfaceMeasure::reference;
     p.contact_pairs[0].scheme          = ContactPairParameters::Scheme::averaged;
-    p.contact_pairs[0].initial_status  = ContactPairParameters::InitialStatus::closed;
+    p.contact_pairs[0].start.status    = ContactPairParameters::InitialStatus::closed;
     p.output.results_folder            = "patch_hanging_results";
     p.output.write_vtu                 = false;
     return p;
@@ -144,7 +144,7 @@ int main(int argc, char **argv)
     plane.shape                  = MasterSurfaceParameters::Shape::plane;
     plane.axis                   = Vector3({0., 0., -1.});
     plane.motion.translation     = {"0", "0", "-0.001*t"};
-    contact.initial_status       = ContactPairParameters::InitialStatus::closed;
+    contact.start.status         = ContactPairParameters::InitialStatus::closed;
     p.output.results_folder      = "patch_hanging_results";
     p.output.write_vtu           = false;
     ContactProblem problem(p, world(), log());

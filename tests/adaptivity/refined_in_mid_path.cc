@@ -30,17 +30,17 @@ namespace
     p.contact_pairs[0].scheme = scheme;
     if (scheme == ContactPairParameters::Scheme::integration_point)
       p.contact_pairs[0].friction_coefficient = 0.;
-    p.contact_pairs[0].initial_status = ContactPairParameters::InitialStatus::closed;
-    p.contact_pairs[0].normal         = ContactPairParameters::Normal::averaged;
-    p.load_stepping.increments        = {8};
-    p.newton.force_tolerance          = 1e-11;
-    p.adaptivity.interval             = 1;
-    p.adaptivity.maximum_level        = 1;
-    p.adaptivity.refine_fraction      = 0.5;
-    p.adaptivity.coarsen_fraction     = 0.1;
-    p.output.results_folder           = folder;
-    p.output.write_vtu                = false;
-    p.output.checkpoint_interval      = 5;
+    p.contact_pairs[0].start.status = ContactPairParameters::InitialStatus::closed;
+    p.contact_pairs[0].normal       = ContactPairParameters::Normal::averaged;
+    p.load_stepping.increments      = {8};
+    p.newton.force_tolerance        = 1e-11;
+    p.adaptivity.interval           = 1;
+    p.adaptivity.maximum_level      = 1;
+    p.adaptivity.refine_fraction    = 0.5;
+    p.adaptivity.coarsen_fraction   = 0.1;
+    p.output.results_folder         = folder;
+    p.output.write_vtu              = false;
+    p.output.checkpoint_interval    = 5;
     return p;
   }
 
@@ -73,7 +73,7 @@ namespace
     p.contact_pairs               = {pair(region(1, {y_minus}), RegionParameters(), friction)};
     auto &contact                 = p.contact_pairs[0];
     contact.scheme                = ContactPairParameters::Scheme::averaged;
-    contact.initial_status        = ContactPairParameters::InitialStatus::closed;
+    contact.start.status          = ContactPairParameters::InitialStatus::closed;
     contact.normal                = ContactPairParameters::Normal::averaged;
     contact.master_surface.shape  = MasterSurfaceParameters::Shape::plane;
     contact.master_surface.axis   = Vector3({0., 1., 0.});
@@ -104,7 +104,7 @@ namespace
     auto &contact                 = p.contact_pairs[0];
     contact.scheme                = scheme;
     contact.normal                = ContactPairParameters::Normal::averaged;
-    contact.initial_status        = ContactPairParameters::InitialStatus::closed;
+    contact.start.status          = ContactPairParameters::InitialStatus::closed;
     p.load_stepping.interval_ends = {1, 2};
     p.load_stepping.increments    = {1, 1};
     p.newton.force_tolerance      = 1e-11;

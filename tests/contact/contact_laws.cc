@@ -118,19 +118,19 @@ namespace
     auto history = forces(p);
     check("resolved, first increment", history[0], 5., tolerance);
     check("resolved, at the end", history[3], 5., tolerance);
-    p.contact_pairs[0].initial_overclosure = Overclosure::interference;
-    history                                = forces(p);
+    p.contact_pairs[0].start.overclosure = Overclosure::interference;
+    history                              = forces(p);
     for (unsigned int i = 0; i < 4; ++i)
       check("interference fit, increment " + std::to_string(i + 1), history[i], 1.25 * (i + 1), tolerance);
-    p.contact_pairs[0].initial_overclosure = Overclosure::adjust;
-    p.boundary_conditions.back().value     = {"-0.002*t"};
+    p.contact_pairs[0].start.overclosure = Overclosure::adjust;
+    p.boundary_conditions.back().value   = {"-0.002*t"};
     check("adjusted, then compressed", forces(p)[3], 1., tolerance);
     p = blocks(0.01, scheme);
     lift(p, "-0.002*t");
-    p.contact_pairs[0].initial_overclosure = Overclosure::adjust;
-    p.contact_pairs[0].adjustment_distance = 0.011;
+    p.contact_pairs[0].start.overclosure         = Overclosure::adjust;
+    p.contact_pairs[0].start.adjustment_distance = 0.011;
     check("gap adjusted, then compressed", run(p).slave_force[2], 1., tolerance);
-    p.contact_pairs[0].adjustment_distance = 0.009;
+    p.contact_pairs[0].start.adjustment_distance = 0.009;
     check("gap beyond the adjustment distance: no force", run(p).slave_force[2] == 0.);
   }
 } // namespace

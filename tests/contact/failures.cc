@@ -81,9 +81,9 @@ int main(int argc, char **argv)
               falling,
               {"close the contact first ('Initial status = closed')", "Smaller increments begin"});
   check("  and has one attempt", !says(above_lines.str(), "again with") && !says(falling, "would still leave"));
-  above.contact_pairs[0].initial_status = ContactPairParameters::InitialStatus::closed;
+  above.contact_pairs[0].start.status = ContactPairParameters::InitialStatus::closed;
   check("  and then does not fail", outcome(above) == "no failure");
-  above.contact_pairs[0].initial_status = ContactPairParameters::InitialStatus::by_gap;
+  above.contact_pairs[0].start.status = ContactPairParameters::InitialStatus::by_gap;
   above.boundary_conditions.erase(above.boundary_conditions.begin() + 1);
   check_words("a block that closed contact would not hold either",
               outcome(above),

@@ -23,7 +23,7 @@ namespace
     p.contact_pairs              = {pair(region(1, {z_minus}), RegionParameters(), 0.2)};
     auto &contact                = p.contact_pairs[0];
     contact.scheme               = scheme;
-    contact.initial_status       = ContactPairParameters::InitialStatus::closed;
+    contact.start.status         = ContactPairParameters::InitialStatus::closed;
     contact.normal               = ContactPairParameters::Normal::averaged;
     contact.master_surface.shape = MasterSurfaceParameters::Shape::plane;
     contact.master_surface.axis  = Vector3({0., 0., 1.});

@@ -127,10 +127,10 @@ namespace
     print_choice("normal", pair.normal);
     print("search distance", pair.search_distance);
     print("projection tolerance", pair.projection_tolerance);
-    print_choice("initial status", pair.initial_status);
-    print_choice("initial overclosure", pair.initial_overclosure);
-    print("adjustment distance", pair.adjustment_distance);
-    print("overclosure limit", pair.overclosure_limit);
+    print_choice("initial status", pair.start.status);
+    print_choice("initial overclosure", pair.start.overclosure);
+    print("adjustment distance", pair.start.adjustment_distance);
+    print("overclosure limit", pair.start.overclosure_limit);
     print_choice("status test", pair.status_test);
   }
 
@@ -194,7 +194,7 @@ namespace
     print("maximum iterations", parameters.linear_solver.maximum_iterations);
     print("augmentation factor", parameters.linear_solver.augmentation_factor);
     print("\nwithout", parameters.strategy.without);
-    print("uses growing friction", parameters.strategy.uses(Remedy::growing_friction));
+    print("uses mixed geometry", parameters.strategy.uses(Remedy::mixed_geometry));
     print("uses three loops", parameters.strategy.uses(Remedy::three_loops));
     print("interval ends", parameters.load_stepping.interval_ends);
     print("increments", parameters.load_stepping.increments);

@@ -62,7 +62,7 @@ namespace
                                                          : pair(lower, upper, rotated ? 0.5 : 0.)};
     p.contact_pairs[0].surface_measure = ContactPairParameters::SurfaceMeasure::reference;
     p.contact_pairs[0].scheme          = ContactPairParameters::Scheme::averaged;
-    p.contact_pairs[0].initial_status  = ContactPairParameters::InitialStatus::closed;
+    p.contact_pairs[0].start.status    = ContactPairParameters::InitialStatus::closed;
     p.output.results_folder            = "schemes_results";
     return p;
   }

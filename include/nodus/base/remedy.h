@@ -10,11 +10,8 @@ namespace Nodus
   /// contact.csv, and a row in the table of contrib/doc/architecture.md, which says what happens without it.
   enum class Remedy : unsigned int
   {
-    geometry_loop,
-    growing_friction,
     three_loops,
     coupled_threshold,
-    smaller_friction_steps,
     mixed_geometry,
     mixed_thresholds,
     regularised_law,
@@ -24,18 +21,15 @@ namespace Nodus
     direct_solver
   };
 
-  constexpr std::array<const char *, 12> remedy_names = {{"geometry loop",
-                                                          "growing friction",
-                                                          "three loops",
-                                                          "coupled threshold",
-                                                          "smaller friction steps",
-                                                          "mixed geometry",
-                                                          "mixed thresholds",
-                                                          "regularised law",
-                                                          "one status at a time",
-                                                          "frozen statuses",
-                                                          "shorter step",
-                                                          "direct solver"}};
+  constexpr std::array<const char *, 9> remedy_names = {{"three loops",
+                                                         "coupled threshold",
+                                                         "mixed geometry",
+                                                         "mixed thresholds",
+                                                         "regularised law",
+                                                         "one status at a time",
+                                                         "frozen statuses",
+                                                         "shorter step",
+                                                         "direct solver"}};
 
   /// A value for each remedy: how often it was used, whether it may be.
   template <typename T>

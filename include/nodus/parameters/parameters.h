@@ -2,6 +2,7 @@
 #define nodus_parameters_parameters_h
 
 #include <nodus/base/types.h>
+#include <nodus/parameters/solution_parameters.h>
 
 #include <map>
 #include <string>
@@ -16,7 +17,6 @@ namespace Nodus
 {
   class ParameterFile;
   struct DeclaredKey;
-  enum class Remedy : unsigned int;
 
   /// Every struct below is one subsection of the parameter file; the text of a key is the name of the
   /// member with blanks, "Young's modulus" and the like excepted. Keys are bound to members and checked
@@ -215,33 +215,38 @@ namespace Nodus
       adjust,      ///< taken as the undeformed state
       interference ///< pressed out in the course of the first interval
     };
-    std::string        name;
-    RegionParameters   slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
-    RegionParameters   master; ///< keys "Master body", ...
-    ContactLaw         contact_law                 = ContactLaw::unilateral;
-    FrictionLaw        friction_law                = FrictionLaw::coulomb;
-    double             friction_coefficient        = 0.;
-    double             second_friction_coefficient = 0.;     ///< across the friction direction; 0: the same
-    Vector3            friction_direction;                   ///< of the first coefficient; zero: there is only one
-    std::string        friction_factor                = "1"; ///< of reference x, y, z and slip rate v
-    double             shear_limit                    = 0.;  ///< [pressure]; 0: none
-    double             normal_augmentation_factor     = 1.;  ///< times E/h gives rho_n
-    double             tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
-    Scheme             scheme                         = Scheme::averaged;
-    Integration        integration                    = Integration::segment;  ///< averaged scheme
-    QuadratureRule     quadrature_rule                = QuadratureRule::gauss; ///< integration points, averaged by face
-    unsigned int       quadrature_points              = 0; ///< per direction of a slave face; 0 = automatic
-    SurfaceMeasure     surface_measure                = SurfaceMeasure::current;
-    Weights            weights                        = Weights::nodal_quadrature;
-    Surface            surface                        = Surface::smoothed;
-    Normal             normal                         = Normal::averaged;
-    double             search_distance                = 0.;   ///< [length]; 0 = automatic
-    double             projection_tolerance           = 0.05; ///< overhang accepted, in face sizes
-    InitialStatus      initial_status                 = InitialStatus::by_gap;
-    InitialOverclosure initial_overclosure            = InitialOverclosure::resolve;
-    double             adjustment_distance            = 0.; ///< gaps up to here are adjusted, too [length]
-    double             overclosure_limit              = 0.; ///< [length]; 0 = automatic
-    StatusTest         status_test                    = StatusTest::weighted;
+    /// The statuses that a run begins with.
+    struct Start
+    {
+      InitialStatus      status              = InitialStatus::by_gap;
+      InitialOverclosure overclosure         = InitialOverclosure::resolve;
+      double             adjustment_distance = 0.; ///< gaps up to here are adjusted, too [length]
+      double             overclosure_limit   = 0.; ///< [length]; 0 = automatic
+    };
+    std::string      name;
+    RegionParameters slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
+    RegionParameters master; ///< keys "Master body", ...
+    ContactLaw       contact_law                 = ContactLaw::unilateral;
+    FrictionLaw      friction_law                = FrictionLaw::coulomb;
+    double           friction_coefficient        = 0.;
+    double           second_friction_coefficient = 0.;     ///< across the friction direction; 0: the same
+    Vector3          friction_direction;                   ///< of the first coefficient; zero: there is only one
+    std::string      friction_factor                = "1"; ///< of reference x, y, z and slip rate v
+    double           shear_limit                    = 0.;  ///< [pressure]; 0: none
+    double           normal_augmentation_factor     = 1.;  ///< times E/h gives rho_n
+    double           tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
+    Scheme           scheme                         = Scheme::averaged;
+    Integration      integration                    = Integration::segment;  ///< averaged scheme
+    QuadratureRule   quadrature_rule                = QuadratureRule::gauss; ///< integration points, averaged by face
+    unsigned int     quadrature_points              = 0; ///< per direction of a slave face; 0 = automatic
+    SurfaceMeasure   surface_measure                = SurfaceMeasure::current;
+    Weights          weights                        = Weights::nodal_quadrature;
+    Surface          surface                        = Surface::smoothed;
+    Normal           normal                         = Normal::averaged;
+    double           search_distance                = 0.;   ///< [length]; 0 = automatic
+    double           projection_tolerance           = 0.05; ///< overhang accepted, in face sizes
+    Start            start;
+    StatusTest       status_test = StatusTest::weighted;
 
     MasterSurfaceParameters master_surface; ///< instead of the master faces; keys "Master surface", ...
 
@@ -259,91 +264,6 @@ namespace Nodus
     {
       return has_rigid_master() ? Integration::face : integration;
     }
-  };
-
-  struct LoopParameters
-  {
-    enum class Mode
-    {
-      fixed_point,
-      newton
-    };
-    unsigned int maximum_passes = 10;
-    double       tolerance      = 0.;                ///< relative; the status loop has none: no status may change
-    Mode         mode           = Mode::fixed_point; ///< newton: part of each Newton iteration, no loop
-  };
-
-  struct NewtonParameters
-  {
-    unsigned int maximum_iterations = 25;
-    double       force_tolerance    = 1e-8; ///< relative to the largest nodal force
-    double contact_tolerance = 1e-8; ///< gap and slip relative to the displacement of the step; friction law absolute
-    bool   line_search       = false;
-    double largest_forcing_term = 1e-4; ///< relative accuracy of a correction; 0: that of the linear solver
-  };
-
-  struct LinearSolverParameters
-  {
-    enum class Type
-    {
-      automatic, ///< see chosen_solver
-      direct,
-      block,
-      condensed
-    };
-    Type         type                = Type::direct;
-    double       tolerance           = 1e-10; ///< block, condensed: relative residual
-    unsigned int maximum_iterations  = 500;   ///< block, condensed: Krylov iterations
-    double       augmentation_factor = 2.;    ///< block: gamma, in units of the diagonal of the stiffness
-  };
-
-  /// What is tried where something fails.
-  struct StrategyParameters
-  {
-    std::vector<std::string> without; ///< remedy_names that are not used
-
-    bool uses(Remedy remedy) const;
-  };
-
-  struct LoadSteppingParameters
-  {
-    std::vector<double>       interval_ends = {1.}; ///< increasing times; the first interval starts at 0
-    std::vector<unsigned int> increments    = {1};  ///< per interval
-    bool                      cut_back      = true; ///< halve increments that fail
-    double       minimum_increment     = 0.; ///< of time, that cut-backs stop at; 0 = 1/64 of the interval's increments
-    double       maximum_increment     = 0.; ///< of time, that increments grow to; 0 = the interval's increments
-    unsigned int easy_iterations       = 10; ///< of Newton, up to which the next increment may be twice as large
-    double       viscous_stabilisation = 0.; ///< [-], see ViscousStabilisation; 0: none
-  };
-
-  struct AdaptivityParameters
-  {
-    enum class Marking
-    {
-      fixed_fraction,
-      target_error
-    };
-    unsigned int interval               = 0;  ///< refine after every so many increments; 0: never
-    unsigned int initial_cycles         = 0;  ///< before the first increment, near expected contact
-    double       contact_distance       = 0.; ///< gaps up to here are expected to close [length]; 0: a slave face
-    unsigned int repetitions            = 0;  ///< of an increment, until nothing is to be refined
-    double       bulk_weight            = 1.; ///< of the stress against the recovered one
-    double       contact_weight         = 1.; ///< of the contact indicator
-    Marking      marking                = Marking::fixed_fraction;
-    double       refine_fraction        = 0.3; ///< of the squared error in the cells to be refined (fixed fraction)
-    double       coarsen_fraction       = 0.03;
-    double       target_error           = 0.05; ///< relative, in energy (target error)
-    unsigned int maximum_level          = 2;    ///< refinements beyond those of the body
-    double       maximum_unknowns       = 1e6;  ///< displacement degrees of freedom
-    bool         slave_at_least_as_fine = true;
-  };
-
-  struct OutputParameters
-  {
-    std::string  results_folder; ///< empty = results/<name of the .prm file>, in the working folder
-    bool         write_vtu           = true;
-    unsigned int vtu_interval        = 1;  ///< every so many increments; 0 = only the last one
-    unsigned int checkpoint_interval = 10; ///< every so many increments; 0 = on signals only
   };
 
   struct Parameters

@@ -76,12 +76,11 @@ namespace Nodus
       {
         const auto &pair = parameters.contact_pairs[p];
         if (evidence.pairs[p].closed == 0 && history.increment == 1 && evidence.left_free.empty() &&
-            pair.initial_status != ContactPairParameters::InitialStatus::closed)
-          cause.changes.push_back(
-              {in_pair(p, "Initial status"),
-               pair.initial_status == ContactPairParameters::InitialStatus::open ? "open" : "by gap",
-               "closed",
-               "the contact holds the body from the start"});
+            pair.start.status != ContactPairParameters::InitialStatus::closed)
+          cause.changes.push_back({in_pair(p, "Initial status"),
+                                   pair.start.status == ContactPairParameters::InitialStatus::open ? "open" : "by gap",
+                                   "closed",
+                                   "the contact holds the body from the start"});
       }
       if (const auto &load = parameters.load_stepping; load.viscous_stabilisation == 0.)
       {

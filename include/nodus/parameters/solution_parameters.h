@@ -1,0 +1,100 @@
+#ifndef nodus_parameters_solution_parameters_h
+#define nodus_parameters_solution_parameters_h
+
+#include <string>
+#include <vector>
+
+// How the problem is solved: loops, Newton's method, linear solver, load steps, adaptivity, files. Each struct is one
+// subsection of the parameter file, as in parameters.h.
+
+namespace Nodus
+{
+  enum class Remedy : unsigned int;
+
+  struct LoopParameters
+  {
+    enum class Mode
+    {
+      fixed_point,
+      newton
+    };
+    unsigned int maximum_passes = 10;
+    double       tolerance      = 0.;                ///< relative; the status loop has none: no status may change
+    Mode         mode           = Mode::fixed_point; ///< newton: part of each Newton iteration, no loop
+  };
+
+  struct NewtonParameters
+  {
+    unsigned int maximum_iterations = 25;
+    double       force_tolerance    = 1e-8; ///< relative to the largest nodal force
+    double contact_tolerance = 1e-8; ///< gap and slip relative to the displacement of the step; friction law absolute
+    bool   line_search       = false;
+    double largest_forcing_term = 1e-4; ///< relative accuracy of a correction; 0: that of the linear solver
+  };
+
+  struct LinearSolverParameters
+  {
+    enum class Type
+    {
+      automatic, ///< see chosen_solver
+      direct,
+      block,
+      condensed
+    };
+    Type         type                = Type::direct;
+    double       tolerance           = 1e-10; ///< block, condensed: relative residual
+    unsigned int maximum_iterations  = 500;   ///< block, condensed: Krylov iterations
+    double       augmentation_factor = 2.;    ///< block: gamma, in units of the diagonal of the stiffness
+  };
+
+  /// What is tried where something fails.
+  struct StrategyParameters
+  {
+    std::vector<std::string> without; ///< remedy_names that are not used
+
+    bool uses(Remedy remedy) const;
+  };
+
+  struct LoadSteppingParameters
+  {
+    std::vector<double>       interval_ends = {1.}; ///< increasing times; the first interval starts at 0
+    std::vector<unsigned int> increments    = {1};  ///< per interval
+    bool                      cut_back      = true; ///< halve increments that fail
+    double       minimum_increment     = 0.; ///< of time, that cut-backs stop at; 0 = 1/64 of the interval's increments
+    double       maximum_increment     = 0.; ///< of time, that increments grow to; 0 = the interval's increments
+    unsigned int easy_iterations       = 10; ///< of Newton, up to which the next increment may be twice as large
+    double       viscous_stabilisation = 0.; ///< [-], see ViscousStabilisation; 0: none
+  };
+
+  struct AdaptivityParameters
+  {
+    enum class Marking
+    {
+      fixed_fraction,
+      target_error
+    };
+    unsigned int interval               = 0;  ///< refine after every so many increments; 0: never
+    unsigned int initial_cycles         = 0;  ///< before the first increment, near expected contact
+    double       contact_distance       = 0.; ///< gaps up to here are expected to close [length]; 0: a slave face
+    unsigned int repetitions            = 0;  ///< of an increment, until nothing is to be refined
+    double       bulk_weight            = 1.; ///< of the stress against the recovered one
+    double       contact_weight         = 1.; ///< of the contact indicator
+    Marking      marking                = Marking::fixed_fraction;
+    double       refine_fraction        = 0.3; ///< of the squared error in the cells to be refined (fixed fraction)
+    double       coarsen_fraction       = 0.03;
+    double       target_error           = 0.05; ///< relative, in energy (target error)
+    unsigned int maximum_level          = 2;    ///< refinements beyond those of the body
+    double       maximum_unknowns       = 1e6;  ///< displacement degrees of freedom
+    bool         slave_at_least_as_fine = true;
+  };
+
+  struct OutputParameters
+  {
+    std::string  results_folder; ///< empty = results/<name of the .prm file>, in the working folder
+    bool         write_vtu           = true;
+    unsigned int vtu_interval        = 1;  ///< every so many increments; 0 = only the last one
+    unsigned int checkpoint_interval = 10; ///< every so many increments; 0 = on signals only
+  };
+} // namespace Nodus
+
+#endif

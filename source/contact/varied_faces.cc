@@ -1,0 +1,79 @@
+#include "contact/varied_faces.h"
+#include "contact/face_rule.h"
+
+#include <deal.II/base/mpi.h>
+
+namespace Nodus
+{
+  VariedFaces::VariedFaces(const std::vector<ContactPairParameters> &pairs,
+                           const ContactSurfaces                    &surfaces,
+                           const ContactGeometry                    &geometry,
+                           const AveragedJump                       &averaged,
+                           const VariationSources                   &sources,
+                           const std::vector<char>                  &active)
+      : pairs_(pairs)
+      , surfaces_(surfaces)
+      , geometry_(geometry)
+      , sources_(sources)
+      , X_(surfaces.positions(std::vector<Vector3>(surfaces.nodes().size())))
+      , of_site_(surfaces.n_owned_slave_nodes())
+  {
+    for (const AveragedJump::Face &face : averaged.faces())
+      note(face, active);
+    find_foreign(active);
+  }
+
+  void VariedFaces::done(const unsigned int site)
+  {
+    for (const unsigned int i : of_site_[site])
+      if (--faces_[i].wanted == 0)
+        faces_[i].variation.reset();
+  }
+
+  const FaceVariation &VariedFaces::variation(Around &around) const
+  {
+    if (!around.variation)
+    {
+      const unsigned int p       = around.face->pair;
+      const bool         current = pairs_[p].surface_measure == ContactPairParameters::SurfaceMeasure::current;
+      around.variation           = std::make_unique<FaceVariation>(
+          geometry_, sources_, *around.face, current ? geometry_.slave[p].positions() : X_, current);
+    }
+    return *around.variation;
+  }
+
+  void VariedFaces::note(const AveragedJump::Face &face, const std::vector<char> &active)
+  {
+    unsigned int wanted = 0;
+    for (const unsigned int k : surfaces_.slave_faces(face.pair)[face.face].slaves)
+      if (k < of_site_.size() && active[k])
+      {
+        of_site_[k].push_back(faces_.size());
+        ++wanted;
+      }
+    if (wanted > 0)
+      faces_.push_back({&face, wanted, nullptr});
+  }
+
+  void VariedFaces::find_foreign(const std::vector<char> &active)
+  {
+    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(surfaces_.layout().communicator);
+    for (unsigned int p = 0; p < surfaces_.n_pairs(); ++p)
+      if (pairs_[p].scheme == ContactPairParameters::Scheme::averaged)
+      {
+        const auto rule = face_rule(pairs_[p], surfaces_.degree());
+        for (unsigned int f = 0; f < surfaces_.slave_faces(p).size(); ++f)
+        {
+          const SurfaceFace &face = surfaces_.slave_faces(p)[f];
+          if (face.owner == rank ||
+              std::none_of(face.slaves.begin(),
+                           face.slaves.end(),
+                           [&](const unsigned int k) { return k < of_site_.size() && active[k]; }))
+            continue;
+          foreign_.push_back(std::make_unique<AveragedJump::Face>(AveragedJump::Face{p, f, {}, {}, 0.}));
+          AveragedJump::find_points(pairs_[p], geometry_, rule, *foreign_.back());
+          note(*foreign_.back(), active);
+        }
+      }
+  }
+} // namespace Nodus

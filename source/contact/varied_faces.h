@@ -1,0 +1,63 @@
+#ifndef nodus_contact_varied_faces_h
+#define nodus_contact_varied_faces_h
+
+#include "contact/face_variation.h"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+namespace Nodus
+{
+  /// The slave faces of the averaged scheme around the sites at hand, with their variations: each is made when the
+  /// first site asks, and dropped after the last one.
+  class VariedFaces
+  {
+  public:
+    /// @p active: per site; the faces around these are wanted.
+    VariedFaces(const std::vector<ContactPairParameters> &pairs,
+                const ContactSurfaces                    &surfaces,
+                const ContactGeometry                    &geometry,
+                const AveragedJump                       &averaged,
+                const VariationSources                   &sources,
+                const std::vector<char>                  &active);
+
+    /// Calls f(variation, number of the site among the slave nodes of the face) for the faces around a site.
+    template <typename Function>
+    void for_each(const unsigned int site, const Function &f)
+    {
+      for (const unsigned int i : of_site_[site])
+      {
+        const FaceVariation &varied = variation(faces_[i]);
+        const auto          &slaves = surfaces_.slave_faces(faces_[i].face->pair)[faces_[i].face->face].slaves;
+        f(varied, std::find(slaves.begin(), slaves.end(), site) - slaves.begin());
+      }
+    }
+    /// An active site will not ask again.
+    void done(unsigned int site);
+
+  private:
+    struct Around
+    {
+      const AveragedJump::Face      *face;
+      unsigned int                   wanted; ///< by sites that are not done
+      std::unique_ptr<FaceVariation> variation;
+    };
+
+    const FaceVariation &variation(Around &around) const;
+    void                 note(const AveragedJump::Face &face, const std::vector<char> &active);
+    /// Faces of other ranks at sites of this one: their masters are here, too.
+    void find_foreign(const std::vector<char> &active);
+
+    const std::vector<ContactPairParameters>        &pairs_;
+    const ContactSurfaces                           &surfaces_;
+    const ContactGeometry                           &geometry_;
+    const VariationSources                          &sources_;
+    std::vector<Point>                               X_; ///< reference positions
+    std::vector<std::vector<unsigned int>>           of_site_;
+    std::vector<Around>                              faces_;
+    std::vector<std::unique_ptr<AveragedJump::Face>> foreign_;
+  };
+} // namespace Nodus
+
+#endif
