@@ -103,7 +103,7 @@ namespace Nodus
     model_.contact->pair(states_.now.unknowns, states_.committed.unknowns.block(0));
   }
 
-  double Equilibrium::evaluate(const bool measure)
+  NewtonProblem::Norms Equilibrium::evaluate(const bool measure)
   {
     const Vector &u = states_.now.unknowns.block(0);
     u_              = u;
@@ -127,9 +127,9 @@ namespace Nodus
       bulk_rhs_ = rhs;
     }
     if (!measure)
-      return 0.;
+      return {};
     model_.contact->gather(states_.now.unknowns, states_.committed.unknowns.block(0));
-    return assemble_contact().force;
+    return assemble_contact();
   }
 
   NewtonProblem::Norms Equilibrium::accept(const unsigned int iteration)

@@ -56,7 +56,7 @@ namespace Nodus
     /// The loops around Newton begin (anew).
     void begin_loops();
 
-    double       evaluate(bool measure) override;
+    Norms        evaluate(bool measure) override;
     Norms        accept(unsigned int iteration) override;
     unsigned int solve(BlockVector &correction, double relative_tolerance) override;
     void         move(double factor, const BlockVector &correction) override;

@@ -98,7 +98,9 @@ namespace Nodus
 
   void Newton::take_step(NewtonProblem &problem, const BlockVector &correction, const NewtonProblem::Norms &norms) const
   {
-    // The first correction moves the prescribed displacements: its force residual says nothing about progress.
+    // The first correction moves the prescribed displacements: its force residual says nothing about progress. Where a
+    // status has just changed, forces balance still and the contact laws do not: the largest of the norms is what
+    // counts.
     const bool search = parameters_.line_search && norms.prescribed <= parameters_.contact_tolerance;
     double     step   = 1.;
     for (unsigned int halving = 0;; ++halving)
@@ -107,8 +109,8 @@ namespace Nodus
       problem.move(step, correction);
       try
       {
-        const double force = problem.evaluate(search && !last);
-        if (!search || last || force <= std::max(norms.force, parameters_.force_tolerance))
+        const NewtonProblem::Norms trial = problem.evaluate(search && !last);
+        if (!search || last || residual(trial) <= std::max(residual(norms), 1.))
           return;
       }
       catch (const SolverFailure &failure)

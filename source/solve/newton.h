@@ -24,9 +24,9 @@ namespace Nodus
 
     virtual ~NewtonProblem() = default;
     /// Forces and their tangent at the trial iterate, every choice (pairing, thresholds, statuses) as it is.
-    /// @returns the relative force residual if @p measure, otherwise 0. @throws SolverFailure where they do not exist,
+    /// @returns the norms of the trial if @p measure, otherwise zeros. @throws SolverFailure where they do not exist,
     /// of the kind inverted_cell where half the step may help.
-    virtual double evaluate(bool measure) = 0;
+    virtual Norms evaluate(bool measure) = 0;
     /// The trial that was evaluated last is the iterate from here on: the choices follow it. @p iteration: corrections
     /// so far. Completes the residual. @throws SolverFailure
     virtual Norms accept(unsigned int iteration) = 0;
@@ -54,14 +54,14 @@ namespace Nodus
     /// Solves from the current iterate; no correction when it already satisfies the tolerances without changes.
     /// Corrections are as exact as the next iterate can use: forcing terms of Eisenstat & Walker (1996), choice 2.
     /// A step into states that do not exist (det F <= 0) is halved, a few times at most; with line search, so is one
-    /// that increases the force residual at the choices that the step was computed with. Every other failure goes up
-    /// at once. @throws SolverFailure with the last norms.
+    /// that increases the largest norm (eq. N5) at the choices that the step was computed with. Every other failure
+    /// goes up at once. @throws SolverFailure with the last norms.
     Report solve(NewtonProblem &problem, const Log &log) const;
 
     bool converged(const NewtonProblem::Norms &norms) const;
 
   private:
-    /// Moves to a trial that exists and, with line search, decreases the force residual.
+    /// Moves to a trial that exists and, with line search, decreases the largest norm.
     void take_step(NewtonProblem &problem, const BlockVector &correction, const NewtonProblem::Norms &norms) const;
     /// Largest norm in units of its tolerance.
     double residual(const NewtonProblem::Norms &norms) const;

@@ -1,6 +1,6 @@
 // Newton and the loop record alone, without physics: a 2 x 2 system x^2 + y^2 = 4, x y = 1 (solution
 // x = (sqrt 6 + sqrt 2)/2, y = 1/x) converges quadratically; failures throw; a step into inverted cells is halved, and
-// so is, with line search, one that does not decrease the force residual; any other failure goes up after one trial,
+// so is, with line search, one that does not decrease the largest residual; any other failure goes up after one trial,
 // and of a trial that is rejected nothing is left; progress is measured from the first correction on.
 
 #include "solve/newton.h"
@@ -32,20 +32,24 @@ namespace
     {
       return std::abs(x * x + y * y - 4);
     }
-    double evaluate(const bool measure) override
+    Norms norms() const
     {
-      ++trials;
-      if (x > domain)
-        throw SolverFailure("outside the domain", kind);
-      return measure ? force() : 0.;
-    }
-    Norms accept(unsigned int) override
-    {
-      ++accepted;
       Norms norms;
       norms.force   = force();
       norms.contact = std::abs(x * y - 1);
       return norms;
+    }
+    Norms evaluate(const bool measure) override
+    {
+      ++trials;
+      if (x > domain)
+        throw SolverFailure("outside the domain", kind);
+      return measure ? norms() : Norms();
+    }
+    Norms accept(unsigned int) override
+    {
+      ++accepted;
+      return norms();
     }
     unsigned int solve(BlockVector &correction, double) override
     {
@@ -75,9 +79,9 @@ namespace
         : factor(f)
     {
     }
-    double evaluate(bool) override
+    Norms evaluate(bool) override
     {
-      return 0.;
+      return {};
     }
     Norms accept(unsigned int) override
     {
@@ -159,6 +163,12 @@ int main(int argc, char **argv)
   report = Newton(parameters).solve(searched, none);
   std::cout << "with line search: iterations " << report.iterations << ", trials " << searched.trials << ", x "
             << searched.x << std::endl;
+
+  // Here forces balance, as where a status has just changed: the full step, which solves the other equation, has a
+  // force residual of 0.25, and so is not halved.
+  TwoByTwo balanced(2, 0);
+  report = Newton(parameters).solve(balanced, none);
+  std::cout << "from balanced forces: iterations " << report.iterations << ", trials " << balanced.trials << std::endl;
   parameters.line_search = false;
 
   for (const double factor : {0.05, 1.})
