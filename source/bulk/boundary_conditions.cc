@@ -197,7 +197,7 @@ namespace Nodus
         RegionParameters where    = parameters_[n].region;
         if (on_cells)
           where.boundary_ids.clear();
-        Load load{&parameters_[n], Region(where, bodies_, label(n)), functions_[n].get()};
+        Load load{&parameters_[n], label(n), Region(where, bodies_, label(n)), functions_[n].get()};
         for (const auto &cell : dof_handler_.active_cell_iterators())
           if (cell->is_locally_owned())
           {
@@ -367,8 +367,18 @@ namespace Nodus
       enter(stage);
     for (auto &function : functions_)
       function->set_time(t);
+    std::string problem;
     for (auto &one : prescribed_)
+    {
       one.value = functions_[one.condition]->value(one.X, one.entry);
+      if (!std::isfinite(one.value) && problem.empty())
+      {
+        const auto &expressions = parameters_[one.condition].value;
+        problem                 = label(one.condition) + ": " +
+                  value_complaint(one.entry < expressions.size() ? expressions[one.entry] : "", one.value, one.X, t);
+      }
+    }
+    throw_everywhere<InputError>(problem, dof_handler_.get_communicator());
     return changes;
   }
 

@@ -26,6 +26,7 @@ namespace Nodus
     struct Load
     {
       const BoundaryConditionParameters *parameters;
+      std::string                        label; ///< for messages
       Region                             region;
       dealii::Function<dim>             *value; ///< time-dependent: set_time(t), then value(X, component)
     };

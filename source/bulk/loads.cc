@@ -1,9 +1,13 @@
 #include "bulk/loads.h"
 #include "bulk/face_table.h"
+#include "parallel/throw_everywhere.h"
+#include "parameters/expression.h"
 
 #include <deal.II/fe/fe_values.h>
 
+#include <cmath>
 #include <limits>
+#include <string>
 
 namespace Nodus
 {
@@ -60,11 +64,12 @@ namespace Nodus
         faces.emplace_back(dof_handler.get_fe().base_element(0), face);
     }
 
-    void add_cell(const CellIterator &cell);
-    void evaluate(double t);
-    void evaluate_dead_loads(LoadedCell &loaded);
-    void add_pressure(const LoadedFace &loaded, const Cell &cell) const;
-    void add_springs(const LoadedFace &loaded, const Cell &cell) const;
+    void   add_cell(const CellIterator &cell);
+    void   evaluate(double t);
+    double value(const Load &load, const Point &X, unsigned int entry);
+    void   evaluate_dead_loads(LoadedCell &loaded);
+    void   add_pressure(const LoadedFace &loaded, const Cell &cell) const;
+    void   add_springs(const LoadedFace &loaded, const Cell &cell) const;
 
     unsigned int dof(const unsigned int node, const unsigned int component) const
     {
@@ -84,6 +89,7 @@ namespace Nodus
     std::vector<int>                              load_of; ///< per cell: index into loaded_cells or -1
     std::vector<LoadedCell>                       loaded_cells;
     double                                        time = std::numeric_limits<double>::quiet_NaN();
+    std::string                                   problem; ///< with the values at this time
   };
 
   void Loads::Implementation::add_cell(const CellIterator &cell)
@@ -138,6 +144,7 @@ namespace Nodus
     if (t == time)
       return;
     time = t;
+    problem.clear();
     for (auto &load : loads)
       load.value->set_time(t);
     for (auto &loaded : loaded_cells)
@@ -147,10 +154,20 @@ namespace Nodus
         face.values.clear();
         for (const auto &point : face.points)
           for (unsigned int c = 0; c < face.load->value->n_components; ++c)
-            face.values.push_back(face.load->parameters->acts(t) ? face.load->value->value(point.X, c) : 0.);
+            face.values.push_back(value(*face.load, point.X, c));
       }
       evaluate_dead_loads(loaded);
     }
+    throw_everywhere<InputError>(problem, dof_handler.get_communicator());
+  }
+
+  /// Of a load at its current time; notes the first one that is no number.
+  double Loads::Implementation::value(const Load &load, const Point &X, const unsigned int entry)
+  {
+    const double number = load.parameters->acts(time) ? load.value->value(X, entry) : 0.;
+    if (!std::isfinite(number) && problem.empty())
+      problem = load.label + ": " + value_complaint(load.parameters->value[entry], number, X, time);
+    return number;
   }
 
   void Loads::Implementation::evaluate_dead_loads(LoadedCell &loaded)
@@ -162,8 +179,7 @@ namespace Nodus
       for (const auto q : volume.quadrature_point_indices())
         for (unsigned int c = 0; c < load->parameters->components.size(); ++c)
         {
-          const double value = load->parameters->acts(time) ? load->value->value(volume.quadrature_point(q), c) : 0.;
-          const double force = value * volume.JxW(q);
+          const double force = value(*load, volume.quadrature_point(q), c) * volume.JxW(q);
           for (unsigned int a = 0; a < dof_handler.get_fe().base_element(0).n_dofs_per_cell(); ++a)
           {
             const unsigned int i = dof(a, load->parameters->components[c]);

@@ -28,7 +28,8 @@ namespace Nodus
     /// Finds the loads of the next cell: cells are numbered in the order of the calls.
     void add_cell(const dealii::DoFHandler<dim>::active_cell_iterator &cell);
 
-    /// Sets the time; does nothing when it is the last one.
+    /// Sets the time; does nothing when it is the last one. Collective. @throws InputError where a load is not a
+    /// number.
     void evaluate(double t);
 
     bool act_on(unsigned int cell) const;

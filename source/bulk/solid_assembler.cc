@@ -357,6 +357,11 @@ namespace Nodus
 
   SolidAssembler::~SolidAssembler() = default;
 
+  void SolidAssembler::set_time(const double t)
+  {
+    scratch_->loads.evaluate(t);
+  }
+
   void SolidAssembler::forces(const Vector &u, const double t, Vector &internal, Vector &external) const
   {
     scratch_->sweep(u, t, internal, external, nullptr, nullptr, nullptr);

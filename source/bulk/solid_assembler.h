@@ -30,6 +30,9 @@ namespace Nodus
                    std::vector<BoundaryConditions::Load>                  &loads,
                    const std::vector<BodyParameters::VolumetricTreatment> &treatments = {});
 
+    /// Evaluates the loads. Collective. @throws InputError on every rank where one is not a number.
+    void set_time(double t);
+
     /// Nodal forces at displacement @p u (with ghosts) and time @p t, no constraints applied:
     /// @p internal = int P:Grad phi (plus springs), @p external = loads. Both fully distributed; those of hanging nodes
     /// are given to the nodes that they follow.

@@ -1,6 +1,7 @@
 #include "contact/contact_assembler.h"
 #include "contact/contact_law.h"
 #include "contact/contact_scatter.h"
+#include "parallel/largest.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -234,20 +235,20 @@ namespace Nodus
 
   double ContactAssembler::norm(const ContactResidual &residual, const double length) const
   {
-    double norm = 0.;
+    Largest norm;
     for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
     {
       const double area = weights_.area()[k];
-      norm              = std::max(norm, std::abs(residual.lambda[k]) / (area * length));
-      double scale      = area; // open or frictionless: the row is -m Lambda
+      norm.add(residual.lambda[k] / (area * length));
+      double scale = area; // open or frictionless: the row is -m Lambda
       if (residual.friction_weight[k] > 0.)
       {
         const double threshold = residual.friction_weight[k] / area;
         const bool   slips     = surfaces_.has_status(k) && (!status_.stick(k) || status_.projected(k));
         scale = area * threshold * (slips ? 1. / status_.tangential_augmentation(k, -threshold) : length);
       }
-      norm = std::max(norm, std::hypot(residual.Lambda[k][0], residual.Lambda[k][1]) / scale);
+      norm.add(std::hypot(residual.Lambda[k][0], residual.Lambda[k][1]) / scale);
     }
-    return dealii::Utilities::MPI::max(norm, surfaces_.layout().communicator);
+    return norm.on_all_ranks(surfaces_.layout().communicator);
   }
 } // namespace Nodus

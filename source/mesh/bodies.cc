@@ -1,5 +1,6 @@
 #include "mesh/bodies.h"
 #include "mesh/mesh_share.h"
+#include "parallel/throw_everywhere.h"
 #include "parallel/wait_for_all.h"
 #include "parameters/expression.h"
 
@@ -10,9 +11,11 @@
 #include <deal.II/grid/manifold.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
+#include <sstream>
 
 namespace Nodus
 {
@@ -154,8 +157,14 @@ namespace Nodus
     for (const auto &body : parameters)
       where.push_back(body.local_refinement > 0 ? parse_expression(body.refine_where) : nullptr);
     std::vector<unsigned int> n_local(parameters.size(), 0); // cells that are split locally
+    const auto                complain = [&](const unsigned int b, const std::string &what)
+    {
+      return "Body " + std::to_string(b + 1) + " ('" + names_[b] + "'): 'Refine where' = '" +
+             parameters[b].refine_where + "' " + what;
+    };
     for (unsigned int level = 0; level < n_levels; ++level)
     {
+      std::string problem;
       for (const auto &cell : triangulation_->active_cell_iterators())
         if (cell->is_locally_owned())
         {
@@ -163,21 +172,31 @@ namespace Nodus
           const BodyParameters &body = parameters[b];
           if (level < body.global_refinement)
             cell->set_refine_flag();
-          else if (level < body.global_refinement + body.local_refinement && where[b]->value(cell->center()) != 0.)
+          else if (level < body.global_refinement + body.local_refinement)
           {
-            cell->set_refine_flag();
-            ++n_local[b];
+            const double value = where[b]->value(cell->center());
+            if (!std::isfinite(value) && problem.empty())
+            {
+              std::ostringstream text;
+              text << "is " << no_number(value) << " at (" << cell->center()
+                   << "); write a condition that is true or false everywhere";
+              problem = complain(b, text.str());
+            }
+            if (value != 0.)
+            {
+              cell->set_refine_flag();
+              ++n_local[b];
+            }
           }
         }
+      throw_everywhere<InputError>(problem, triangulation_->get_communicator());
       triangulation_->execute_coarsening_and_refinement();
     }
     dealii::Utilities::MPI::sum(n_local, triangulation_->get_communicator(), n_local);
     for (unsigned int b = 0; b < parameters.size(); ++b)
       if (parameters[b].local_refinement > 0 && n_local[b] == 0)
         throw InputError(
-            "Body " + std::to_string(b + 1) + " ('" + names_[b] + "'): 'Refine where' = '" +
-            parameters[b].refine_where +
-            "' holds at the centre of no cell; let it reach half a cell deeper, or drop 'Local refinement'");
+            complain(b, "holds at the centre of no cell; let it reach half a cell deeper, or drop 'Local refinement'"));
   }
 
   void Bodies::balance(const std::function<unsigned int(const Triangulation::cell_iterator &)> &weight)

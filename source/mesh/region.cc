@@ -1,6 +1,8 @@
 #include "mesh/region.h"
+#include "parallel/throw_everywhere.h"
 #include "parameters/expression.h"
 
+#include <cmath>
 #include <set>
 #include <sstream>
 
@@ -45,7 +47,39 @@ namespace Nodus
       }
 
     if (parameters.where.find_first_not_of(" \t") != std::string::npos)
+    {
       predicate_ = parse_predicate(parameters.where, context);
+      refuse_undefined(bodies, context, parameters.where);
+    }
+  }
+
+  void Region::refuse_undefined(const Bodies &bodies, const std::string &context, const std::string &where) const
+  {
+    std::string problem;
+    const auto  test = [&](const Point &X)
+    {
+      const double value = predicate_->value(X);
+      if (std::isfinite(value) || !problem.empty())
+        return;
+      std::ostringstream text;
+      text << context << ": 'Where' = '" << where << "' is " << no_number(value) << " at (" << X
+           << "); write a condition that is true or false everywhere";
+      problem = text.str();
+    };
+    const auto test_all = [&](const auto &part)
+    {
+      for (const auto v : part->vertex_indices())
+        test(part->vertex(v));
+      test(part->center());
+    };
+    for (const auto &cell : bodies.triangulation().active_cell_iterators())
+      if (cell->is_locally_owned() && ids_.empty() && contains_cell(cell))
+        test_all(cell);
+      else if (cell->is_locally_owned())
+        for (const auto f : cell->face_indices())
+          if (contains_face(cell, f))
+            test_all(cell->face(f));
+    throw_everywhere<InputError>(problem, bodies.triangulation().get_communicator());
   }
 
   Region::~Region()                  = default;
@@ -53,6 +87,10 @@ namespace Nodus
 
   bool Region::contains_point(const Point &X) const
   {
-    return !predicate_ || predicate_->value(X) != 0.;
+    if (!predicate_)
+      return true;
+    const double value = predicate_->value(X);
+    AssertThrow(std::isfinite(value), dealii::ExcMessage("a 'Where' is not a number at a node"));
+    return value != 0.;
   }
 } // namespace Nodus

@@ -23,7 +23,9 @@ namespace Nodus
   {
   public:
     /// @p context names the subsection in messages, e.g. "Contact pair 1, slave".
-    /// @throws InputError on an unknown body, an id no face of the body has, or a predicate that does not parse.
+    /// @throws InputError, on every rank, on an unknown body, an id no face of the body has, or a predicate that does
+    /// not parse, or is not a number at a vertex or the centre of a face (without ids: cell) that it thins out.
+    /// Collective.
     Region(const RegionParameters &parameters, const Bodies &bodies, const std::string &context);
     ~Region();
     Region(Region &&) noexcept;
@@ -71,6 +73,8 @@ namespace Nodus
     bool contains_point(const Point &X) const;
 
   private:
+    void refuse_undefined(const Bodies &bodies, const std::string &context, const std::string &where) const;
+
     unsigned int                                 body_;
     std::vector<dealii::types::boundary_id>      ids_;
     std::unique_ptr<dealii::FunctionParser<dim>> predicate_;

@@ -3,7 +3,9 @@
 #include <deal.II/base/numbers.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
+#include <regex>
 #include <sstream>
 
 namespace Nodus
@@ -22,12 +24,35 @@ namespace Nodus
       }
       return false;
     }
+    /// A '=' that compares nothing assigns, which changes what is evaluated after it.
+    bool assigns(const std::string &expression)
+    {
+      for (std::size_t i = 0; i < expression.size(); ++i)
+        if (expression[i] == '=')
+        {
+          if (i + 1 < expression.size() && expression[i + 1] == '=')
+            ++i;
+          else if (i == 0 || std::string("<>!").find(expression[i - 1]) == std::string::npos)
+            return true;
+        }
+      return false;
+    }
+
+    /// deal.II's random numbers differ from one evaluation to the next, and from rank to rank.
+    bool is_random(const std::string &expression)
+    {
+      return std::regex_search(expression, std::regex(R"((^|[^A-Za-z0-9_])rand(_seed)?\s*\()"));
+    }
   } // namespace
 
   std::string expression_complaint(const std::string &expression, const std::string &variables)
   {
     if (has_comma_outside_functions(expression))
       return "a ',' outside of a function; several expressions are separated by ';'";
+    if (assigns(expression))
+      return "a '=' that is an assignment; '==' compares";
+    if (is_random(expression))
+      return "random numbers, which are others at each evaluation";
     // deal.II prints its own copy of the complaint to std::cerr.
     std::ostringstream    unwanted;
     std::streambuf *const screen = std::cerr.rdbuf(unwanted.rdbuf());
@@ -61,6 +86,19 @@ namespace Nodus
     }
     std::cerr.rdbuf(screen);
     return message;
+  }
+
+  std::string no_number(const double value)
+  {
+    return std::isnan(value) ? "not a number" : "infinite";
+  }
+
+  std::string value_complaint(const std::string &expression, const double value, const Point &X, const double t)
+  {
+    std::ostringstream text;
+    text << "'Value' = '" << expression << "' is " << no_number(value) << " at (" << X << "), t = " << t
+         << "; correct the expression, it must be a number wherever and whenever the condition acts";
+    return text.str();
   }
 
   std::unique_ptr<dealii::FunctionParser<dim>> parse_expression(const std::string &expression)

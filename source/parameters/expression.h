@@ -14,6 +14,11 @@ namespace Nodus
   /// constant pi), empty when it is fine.
   std::string expression_complaint(const std::string &expression, const std::string &variables);
 
+  /// "not a number" or "infinite", for messages.
+  std::string no_number(double value);
+  /// Says that the @p value of @p expression at @p X and @p t is not a number.
+  std::string value_complaint(const std::string &expression, double value, const Point &X, double t);
+
   /// A number of x, y, z that expression_complaint() has found fine.
   std::unique_ptr<dealii::FunctionParser<dim>> parse_expression(const std::string &expression);
 } // namespace Nodus

@@ -13,6 +13,15 @@ namespace Nodus
   {
     using namespace ParameterKeys;
 
+    /// Beyond these what has 'converged' says nothing: with a force tolerance of 1 no load need be carried at all. A
+    /// loop with tolerance 1 takes one pass, where changes of the geometry are to be neglected.
+    constexpr double largest_newton_tolerance = 1e-3, largest_loop_tolerance = 1., largest_linear_tolerance = 0.01;
+
+    Patterns::Double at_most(const double limit)
+    {
+      return Patterns::Double(std::numeric_limits<double>::min(), limit);
+    }
+
     const Names<LoopParameters::Mode> mode_names = {{LoopParameters::Mode::fixed_point, "fixed point"},
                                                     {LoopParameters::Mode::newton, "newton"}};
 
@@ -35,7 +44,7 @@ namespace Nodus
                      " in each Newton iteration, with loops as the fallback where that stalls [-].");
       prm.add_parameter("Maximum passes", loop.maximum_passes, "Passes before the increment is cut [-].", at_least_one);
       if (!tolerance.empty())
-        prm.add_parameter("Tolerance", loop.tolerance, tolerance, positive);
+        prm.add_parameter("Tolerance", loop.tolerance, tolerance, at_most(largest_loop_tolerance));
     }
 
     void add(ParameterHandler &prm, NewtonParameters &newton)
@@ -45,11 +54,11 @@ namespace Nodus
       prm.add_parameter("Force tolerance",
                         newton.force_tolerance,
                         "Largest nodal force out of balance relative to the largest nodal force [-].",
-                        positive);
+                        at_most(largest_newton_tolerance));
       prm.add_parameter("Contact tolerance",
                         newton.contact_tolerance,
                         "Gap and slip relative to the displacement of the step, friction law absolute [-].",
-                        positive);
+                        at_most(largest_newton_tolerance));
       prm.add_parameter("Line search", newton.line_search, "Shorten a correction that increases the residual [-].");
       prm.add_parameter("Largest forcing term",
                         newton.largest_forcing_term,
@@ -74,7 +83,7 @@ namespace Nodus
                         solver.tolerance,
                         "Block and condensed solver: least relative residual; corrections that Newton goes on from "
                         "need not reach it [-].",
-                        positive);
+                        at_most(largest_linear_tolerance));
       prm.add_parameter("Maximum iterations",
                         solver.maximum_iterations,
                         "Block and condensed solver: iterations before they give up [-].",

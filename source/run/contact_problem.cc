@@ -67,6 +67,8 @@ namespace Nodus
       if (!restart)
         adaptation.refine_near_contact();
       equilibrium.begin_on_mesh();
+      if (!restart)
+        model.set_conditions(path.at_hand().end); // what is wrong at once is refused before there is any file
       results.begin_on_mesh();
       journal.tables = std::make_unique<Tables>(parameters.output.results_folder, model.communicator);
       journal.diagnosis.begin_run();

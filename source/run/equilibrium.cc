@@ -1,6 +1,7 @@
 #include "run/equilibrium.h"
 #include "contact/free_motions.h"
 #include "mesh/sides.h"
+#include "parallel/largest.h"
 #include "parallel/owned_values.h"
 #include "run/unheld_bodies.h"
 
@@ -185,22 +186,22 @@ namespace Nodus
 
     Vector moved(states_.now.unknowns.block(0));
     moved -= states_.committed.unknowns.block(0);
-    const double length          = std::max(moved.linfty_norm(), model_.length_scale);
+    const double length          = std::max(largest_entry(moved), model_.length_scale);
     double      &stiffness_scale = states_.now.stiffness_scale;
     if (stiffness_scale == 0.)
       stiffness_scale = system_.bulk.largest_diagonal();
     // The last term is round-off: without it a body that only translates would be measured against its own noise.
-    const double      scale = std::max({forces_.internal.linfty_norm(),
-                                        forces_.external.linfty_norm(),
-                                        forces_.contact.linfty_norm(),
+    const double      scale = std::max({largest_entry(forces_.internal),
+                                        largest_entry(forces_.external),
+                                        largest_entry(forces_.contact),
                                         relative_force_floor * stiffness_scale * length});
     const OwnedValues out(forces_.out_of_balance), in(forces_.internal), ex(forces_.external), on(forces_.contact);
     for (const auto i : owned)
       out(i) = constraints_->is_constrained(i) ? 0. : in(i)-ex(i) + on(i);
     forces_.scale    = scale;
-    norms.force      = scale > 0. ? forces_.out_of_balance.linfty_norm() / scale : 0.;
+    norms.force      = scale > 0. ? largest_entry(forces_.out_of_balance) / scale : 0.;
     norms.contact    = model_.contact->norm(length);
-    norms.prescribed = prescribed.linfty_norm() / length;
+    norms.prescribed = largest_entry(prescribed) / length;
     driven_.add_to(system_, forces_.internal, forces_.external, scale, length, norms);
     return norms;
   }

@@ -104,13 +104,19 @@ namespace Nodus
     contact->gather(now.unknowns, now.unknowns.block(0));
   }
 
+  void Model::set_conditions(const double t)
+  {
+    if (boundary_conditions->set_time(t))
+      contact->surfaces().set_fixed(boundary_conditions->homogeneous_constraints());
+    solid->set_time(t);
+    rigid_bodies.set_time(t);
+  }
+
   void Model::impose(const Increment &increment)
   {
-    if (boundary_conditions->set_time(increment.end))
-      contact->surfaces().set_fixed(boundary_conditions->homogeneous_constraints());
+    set_conditions(increment.end);
     const double first_interval = parameters.load_stepping.interval_ends.front();
     contact->begin_increment(increment.begin, increment.end, std::min(1., increment.end / first_interval));
-    rigid_bodies.set_time(increment.end);
     stabilisation->set_increment(increment.begin, increment.end, increment.interval_begin, increment.interval_end);
   }
 

@@ -30,7 +30,10 @@ namespace Nodus
     /// All that is made for the mesh as it is. The state at hand is at rest then, but for what does not depend on the
     /// mesh: rigid bodies, energies.
     void set_up_mesh(State &now);
-    /// The conditions of @p increment: prescribed displacements, loads, rigid motions, stabilisation. Collective.
+    /// Prescribed displacements, loads and rigid motions at time @p t. Collective. @throws InputError, on every rank,
+    /// where one is not a number.
+    void set_conditions(double t);
+    /// All that holds in @p increment: conditions, stabilisation, the part of interference fits. Collective.
     void impose(const Increment &increment);
     /// The state at hand becomes the one that the increment began with, and what refers to it follows. Collective.
     void roll_back(States &states);

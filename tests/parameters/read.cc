@@ -227,7 +227,7 @@ namespace
   {
     std::ostringstream    text;
     std::streambuf *const screen = std::cout.rdbuf(text.rdbuf());
-    print(Parameters::read(file, {"Newton/Force tolerance=0.25", "Body 2/Material/Young's modulus = 3"}));
+    print(Parameters::read(file, {"Newton/Force tolerance=0.00025", "Body 2/Material/Young's modulus = 3"}));
     std::cout.rdbuf(screen);
     return text.str();
   }
