@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace Nodus
 {
@@ -132,11 +131,8 @@ namespace Nodus
     visited_.clear();
     opened_.assign(now_.contact.size(), false);
     frozen_.assign(now_.contact.size(), false);
-    seen_.assign(now_.contact.size(), {{-1., -1., -1.}});
-    one_at_a_time_ = false;
-    freezes_       = false;
-    merged_        = merged;
-    returns_       = 0;
+    merged_  = merged;
+    returns_ = 0;
     note_friction();
   }
 
@@ -217,30 +213,11 @@ namespace Nodus
           now_.stick[k] = c == Contradiction::against_slip; // for the reports: the law itself needs no status
           continue;
         }
-        if (one_at_a_time_ || freezes_)
-          seen_[k][static_cast<unsigned int>(status(k))] = size;
         if (c == Contradiction::none || frozen_[k] || (closing_only && c != Contradiction::penetration))
           continue;
         result.sites.push_back(k);
         found.push_back(c);
       }
-    if (one_at_a_time_)
-    {
-      DoFIndex least = std::numeric_limits<DoFIndex>::max();
-      for (const unsigned int k : result.sites)
-        least = std::min(least, surfaces_.order(k));
-      const DoFIndex first = dealii::Utilities::MPI::min(least, communicator);
-      const auto     at    = std::find_if(
-          result.sites.begin(), result.sites.end(), [&](const unsigned int k) { return surfaces_.order(k) == first; });
-      const Contradiction what = at == result.sites.end() ? Contradiction::none : found[at - result.sites.begin()];
-      const unsigned int  site = at == result.sites.end() ? 0 : *at;
-      result.sites.clear();
-      if (what != Contradiction::none)
-      {
-        result.sites = {site};
-        found        = {what};
-      }
-    }
 
     // Stick would take a site that closes back to where the increment began. One that has come farther than friction
     // can hold slips (eq. S3): eq. 7 with the threshold of the pressure that eq. 2 closes it with.
@@ -291,55 +268,27 @@ namespace Nodus
     update.period         = met - differs.begin() + 1;
     update.cycles         = merged_ && ++returns_ > tolerated_returns;
     update.to_regularised = !regularised_ && (update.cycles || !merged_) && can_regularise();
-    const bool alternates = strategy_.uses(Remedy::one_status_at_a_time);
-    freezes_              = freezes_ || (!merged_ && !update.to_regularised && (one_at_a_time_ || !alternates) &&
-                            strategy_.uses(Remedy::frozen_statuses));
-    std::vector<unsigned int> cycling;
-    for (unsigned int back = 0; back < update.period; ++back)
-    {
-      const auto &a = visited_[visited_.size() - 1 - back], &b = visited_[visited_.size() - 2 - back];
-      for (unsigned int k = 0; k < a.size(); ++k)
-        if (a[k] != b[k])
+    const bool freezes    = !merged_ && !update.to_regularised && strategy_.uses(Remedy::frozen_statuses);
+    for (unsigned int k = 0; k < ledger_.size(); ++k)
+      for (unsigned int back = visited_.size() - update.period; back < visited_.size(); ++back)
+        if (visited_[back][k] != visited_[back - 1][k])
         {
           ledger_[k].period = update.period;
-          if (surfaces_.is_owned(k) && !frozen_[k])
+          if (freezes && surfaces_.is_owned(k) && !frozen_[k])
           {
-            frozen_[k] = freezes_;
-            cycling.push_back(k);
+            frozen_[k] = true;
+            ++update.frozen;
           }
         }
-    }
+    if (freezes)
+      update.frozen = dealii::Utilities::MPI::sum(update.frozen, surfaces_.layout().communicator);
     if (update.to_regularised)
     {
       regularise();
       update.cycles = false;
       returns_      = 0;
     }
-    else if (freezes_)
-      update.frozen = freeze(cycling);
-    else if (!merged_ && !one_at_a_time_)
-      seen_.assign(now_.contact.size(), {{-1., -1., -1.}});
-    one_at_a_time_       = alternates && !merged_ && !freezes_ && !update.to_regularised;
-    update.one_at_a_time = one_at_a_time_;
     visited_.assign(1, code());
-  }
-
-  /// Gives the @p sites the status that they contradicted least while they cycled. Returns their number on all ranks.
-  unsigned int Status::freeze(const std::vector<unsigned int> &sites)
-  {
-    for (const unsigned int k : sites)
-    {
-      ContactStatus best = status(k);
-      for (const ContactStatus candidate : {ContactStatus::open, ContactStatus::slip, ContactStatus::stick})
-        if (const double size = seen_[k][static_cast<unsigned int>(candidate)];
-            size >= 0. && size < seen_[k][static_cast<unsigned int>(best)])
-          best = candidate;
-      now_.contact[k] = best != ContactStatus::open;
-      now_.stick[k]   = best != ContactStatus::slip;
-    }
-    surfaces_.site_exchange().update(now_.contact);
-    surfaces_.site_exchange().update(now_.stick);
-    return dealii::Utilities::MPI::sum<unsigned int>(sites.size(), surfaces_.layout().communicator);
   }
 
   Status::Violation Status::frozen_violation(const StatusInput &input) const

@@ -194,17 +194,14 @@ namespace Nodus
       bool                      cycles         = false; ///< merged loop: visited again too often
       unsigned int              frozen         = 0;     ///< sites that keep their status from here on, on all ranks
       bool                      to_regularised = false; ///< from here on laws are regularised where that is possible
-      bool                      one_at_a_time  = false; ///< from here on one site changes in a pass
       std::vector<unsigned int> sites;                  ///< of this rank that changed
     };
-    /// Tests every site and changes those that contradict their status (eq. 2, 7, S2); begin_loop() comes first. Once
-    /// a status vector comes back, only the contradicting site of lowest order (ContactSurfaces) changes in a pass:
-    /// Murty's least-index rule, which is finite for frictionless contact at frozen geometry where changing all at once
-    /// may cycle. Where one comes back even so (friction), no vector may satisfy all sites: those that take part in the
-    /// cycle, and in later ones, are frozen with the status that they contradict least; the others change all at once
-    /// again. A merged loop has no such rules and cycles when vectors come back time and again.
-    /// Before all that, sites that share multipliers, whose conditions need not have a common solution, get
-    /// regularised laws for the rest of the attempt: see regularise(). Collective.
+    /// Tests every site and changes those that contradict their status (eq. 2, 7, S2); begin_loop() comes first. Where
+    /// a status vector comes back, changes would cycle, and no vector may satisfy all sites: those that take part in
+    /// the cycle, and in later ones, keep the status that they have; frozen_violation() tells by how much they
+    /// contradict it. A merged loop has no such rule and cycles when vectors come back time and again. Before that,
+    /// sites that share multipliers, whose conditions need not have a common solution, get regularised laws for the
+    /// rest of the attempt: see regularise(). Collective.
     /// @p closing_only: sites that penetrate close, nothing else changes (an iterate whose pressures mean nothing yet).
     Update update(const StatusInput &input, bool closing_only = false);
 
@@ -268,7 +265,6 @@ namespace Nodus
     Contradiction       contradiction(const StatusInput &input, unsigned int site, double pressure, double &size) const;
     std::vector<double> largest_pressures(const StatusInput &input) const;
     void                find_period(Update &update);
-    unsigned int        freeze(const std::vector<unsigned int> &sites);
 
     const std::vector<ContactPairParameters> &pairs_;
     const ContactSurfaces                    &surfaces_;
@@ -281,11 +277,10 @@ namespace Nodus
     double                                    resolved_ = 0.;
     std::vector<StatusLedger>                 ledger_;
     std::vector<std::vector<char>>            visited_;
-    std::vector<char>                         opened_; ///< in this status loop
-    std::vector<char>                         frozen_; ///< in this status loop
-    std::vector<std::array<double, 3>>        seen_; ///< last violation while open, slip, stick since a cycle; -1: none
+    std::vector<char>                         opened_;       ///< in this status loop
+    std::vector<char>                         frozen_;       ///< in this status loop
     std::vector<char>                         had_friction_; ///< at the last test: the iterate knows of friction there
-    bool                                      one_at_a_time_ = false, freezes_ = false, merged_ = false;
+    bool                                      merged_      = false;
     bool                                      regularised_ = false; ///< in this attempt at the increment
     bool                                      hold_        = false;
     unsigned int                              returns_     = 0; ///< to a visited vector, in this loop

@@ -268,8 +268,6 @@ namespace Nodus
       statuses[s] = static_cast<char>(contact.status().status(s));
     journal_.diagnosis.add_statuses(statuses);
     StatusChanges result{update.changes, update.frozen, ""};
-    if (update.one_at_a_time)
-      journal_.count(Remedy::one_status_at_a_time);
     if (update.frozen > 0)
       journal_.count(Remedy::frozen_statuses);
     if (update.changes == 0)
@@ -293,9 +291,8 @@ namespace Nodus
       cycling_.clear();
       for (const std::string &locus : loci)
         cycling_ += (cycling_.empty() ? "" : "; ") + locus;
-      journal_.console.remark(
-          "these statuses were met " + std::to_string(update.period) +
-          (merged_.status ? " iterations ago" : " passes ago: from here one node changes at a time"));
+      journal_.console.remark("these statuses were met " + std::to_string(update.period) +
+                              (merged_.status ? " iterations ago" : " passes ago"));
     }
     return result;
   }

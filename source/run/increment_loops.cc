@@ -117,7 +117,7 @@ namespace Nodus
     note_pass(loop, update.changes, update.first);
     if (update.frozen > 0)
       journal_.console.remark("the statuses cycle: " + std::to_string(update.frozen) +
-                              " sites keep the one that they contradict least: " + equilibrium_.cycling());
+                              " sites keep the one that they have: " + equilibrium_.cycling());
     return loop.finished(update.changes, update.first);
   }
 

@@ -13,7 +13,7 @@
 // | increment      | halves                                       | LoadPath::solve                     |
 // | geometry loop  | slow passes are mixed                        | IncrementLoops::geometry_converged  |
 // | threshold loop | slow passes are mixed                        | IncrementLoops::threshold_converged |
-// | statuses cycle | regularised law; one site at a time; frozen  | Status::find_period                 |
+// | statuses cycle | regularised law; frozen statuses             | Status::find_period                 |
 // | Newton's step  | halved: inverted cells, line search          | Newton::take_step                   |
 // | linear solver  | the direct one                               | RescuedSolver                       |
 

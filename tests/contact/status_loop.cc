@@ -1,8 +1,8 @@
 // One slave node through the status loop: what contradicts a status, what follows, what the ledger says. A node that
 // opened in this loop and closes again slips: with stick on closing, stick that pulls the node open would cycle; so
 // does one that closes farther away than friction can hold: with friction mu and augmentation factor a, beyond mu d /
-// a. One that cycles is frozen where it contradicts its status least (open, by 7 * 0.01 of the largest pressure, not
-// 0.3), and an integration point that cycles has the regularised law: friction contradicts its status no more.
+// a. One that cycles keeps the status that it has then (open, which it contradicts by 7 * 0.01 of the largest
+// pressure), and an integration point that cycles has the regularised law: friction contradicts its status no more.
 
 #include "../contact_fixture.h"
 

@@ -15,18 +15,16 @@ namespace Nodus
     mixed_geometry,
     mixed_thresholds,
     regularised_law,
-    one_status_at_a_time,
     frozen_statuses,
     shorter_step,
     direct_solver
   };
 
-  constexpr std::array<const char *, 9> remedy_names = {{"three loops",
+  constexpr std::array<const char *, 8> remedy_names = {{"three loops",
                                                          "coupled threshold",
                                                          "mixed geometry",
                                                          "mixed thresholds",
                                                          "regularised law",
-                                                         "one status at a time",
                                                          "frozen statuses",
                                                          "shorter step",
                                                          "direct solver"}};
