@@ -4,8 +4,9 @@
 file(REMOVE_RECURSE ${FOLDER})
 set(prm ${CASE})
 if(CASE MATCHES "^random ([0-9]+) ([0-9]+)$")
+  # the Python of Debian, which has numpy
   execute_process(COMMAND ${CMAKE_COMMAND} -E env NODUS_STUDIES=${FOLDER}
-    ${RANDOM_CASES} --seed ${CMAKE_MATCH_1} --only ${CMAKE_MATCH_2} --write
+    /usr/bin/python3 ${RANDOM_CASES} --seed ${CMAKE_MATCH_1} --only ${CMAKE_MATCH_2} --write
     RESULT_VARIABLE code OUTPUT_VARIABLE prm OUTPUT_STRIP_TRAILING_WHITESPACE)
   if(NOT code EQUAL 0)
     message(FATAL_ERROR "random_cases.py ended with ${code}; contrib/install-dependencies installs what it needs")
