@@ -28,19 +28,18 @@ namespace Nodus
     const MPI_Comm communicator = surfaces.layout().communicator;
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
-      const double limit = pairs[p].start.overclosure_limit > 0. ? pairs[p].start.overclosure_limit : 0.5 * surfaces.face_size(p);
+      const auto  &start = pairs[p].start;
+      const double limit = start.overclosure_limit > 0. ? start.overclosure_limit : 0.5 * surfaces.face_size(p);
       const auto   worst = dealii::Utilities::MPI::min_max_avg(deepest[p], communicator);
+      if (worst.max <= limit)
+        continue;
       if (dealii::Utilities::MPI::this_mpi_process(communicator) != worst.max_index)
         where[p].clear();
-      const std::vector<std::string> place = loci(pairs, surfaces, where[p], 1);
-      std::ostringstream             message;
-      if (worst.max > limit)
-      {
-        message << "the bodies overlap at the start: " << place.front() << " is " << worst.max
-                << " inside the master, the limit is " << limit << "; move the bodies apart, or raise 'Contact pair "
-                << p + 1 << "/Overclosure limit' if this is meant";
-        throw InputError(message.str());
-      }
+      std::ostringstream message;
+      message << "the bodies overlap at the start: " << loci(pairs, surfaces, where[p], 1).front() << " is "
+              << worst.max << " inside the master, the limit is " << limit
+              << "; move the bodies apart, or raise 'Contact pair " << p + 1 << "/Overclosure limit' if this is meant";
+      throw InputError(message.str());
     }
   }
 } // namespace Nodus
