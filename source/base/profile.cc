@@ -23,6 +23,7 @@ namespace Nodus
                                          "bulk assembly",
                                          "solver set-up",
                                          "solver iterations",
+                                         "judge",
                                          "output",
                                          "other"};
 

@@ -22,6 +22,7 @@ namespace Nodus
     bulk_assembly,
     solver_set_up,
     solver_iterations,
+    judgement, ///< of the states that are found
     output,
     other
   };

@@ -1,7 +1,9 @@
 #include "contact/contact_interface.h"
 #include "contact/geometry_tangent.h"
 #include "contact/initial_overlap.h"
+#include "contact/intrusion.h"
 #include "contact/loci.h"
+#include "contact/master_request.h"
 #include "contact/site_values.h"
 #include "contact/tractions.h"
 #include "mesh/sides.h"
@@ -17,6 +19,9 @@ namespace Nodus
 {
   namespace
   {
+    /// Where a step would take nodes through the other surface they end this part of a face behind it.
+    constexpr double landing_depth = 0.25;
+
     /// rho_n = factor E/h: the stiffness of a layer one slave face deep, of the softer material.
     std::vector<double> normal_augmentation(const std::vector<ContactPairParameters> &pairs,
                                             const std::vector<double>                &stiffness,
@@ -141,6 +146,20 @@ namespace Nodus
     unknowns.block(1).compress(dealii::VectorOperation::insert);
     unknowns.block(2).compress(dealii::VectorOperation::insert);
     gather(unknowns, start);
+  }
+
+  double ContactInterface::visible_part(const Vector &from, const Vector &to) const
+  {
+    std::vector<Vector3> before, now;
+    surfaces_.gather(from, before);
+    surfaces_.gather(to, now);
+    const std::vector<Point> x = surfaces_.positions(before);
+    std::vector<double>      seen, landing;
+    for (const double reach : search_reach(pairs_, surfaces_, x))
+      seen.push_back(0.5 * reach);
+    for (unsigned int p = 0; p < pairs_.size(); ++p)
+      landing.push_back(landing_depth * surfaces_.face_size(p));
+    return part_before_passage(surfaces_, x, surfaces_.positions(now), seen, landing);
   }
 
   void ContactInterface::resume(const BlockVector &unknowns, const Vector &start)
@@ -287,6 +306,17 @@ namespace Nodus
         unknowns.block(1)(surfaces_.multiplier(k)) = mean[k];
     unknowns.block(1).compress(dealii::VectorOperation::insert);
     gather(unknowns, start);
+  }
+
+  Status::Violation ContactInterface::violation() const
+  {
+    return status_.violation(status_input());
+  }
+
+  Status::Change ContactInterface::threshold_change(const double duration)
+  {
+    update_slip_rates(duration);
+    return status_.threshold_change(pressure());
   }
 
   Status::Violation ContactInterface::frozen_violation() const

@@ -55,6 +55,9 @@ namespace Nodus
     /// direction in space and its length in the new tangent planes, lambda the nodal force; nodes without partner lose
     /// all.
     void pair(BlockVector &unknowns, const Vector &start);
+    /// The part, 0 to 1, of the way from the displacements @p from to @p to on which no node of a pair goes farther
+    /// behind the other surface than pairing looks.
+    double visible_part(const Vector &from, const Vector &to) const;
     /// The state that this refers to has been set to another one, to which @p unknowns belong.
     void resume(const BlockVector &unknowns, const Vector &start);
 
@@ -83,8 +86,12 @@ namespace Nodus
     /// The laws have just been regularised: multipliers of lumped weights become the nodal means that those of
     /// consistent weights had.
     void pass_to_regularised_law(BlockVector &unknowns, const Vector &start);
-    /// By how much the sites that were frozen in this loop violate their statuses.
+    /// By how much the sites violate their statuses: all, and those that were frozen in this loop.
+    Status::Violation violation() const;
     Status::Violation frozen_violation() const;
+    /// By how much the thresholds differ from those of the present pressures and, where friction depends on them, slip
+    /// rates, which it sets (Status::threshold_change).
+    Status::Change threshold_change(double duration);
 
     /// Sets what the next correction must add at prescribed components, zero elsewhere; to zero without an argument.
     void set_prescribed(const Vector &prescribed);

@@ -1,14 +1,71 @@
 #include "contact/initial_overlap.h"
+#include "contact/intrusion.h"
 #include "contact/loci.h"
 #include "contact/pairing.h"
 #include "contact/surface.h"
+#include "mesh/bodies.h"
+#include "mesh/sides.h"
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/mpi_remote_point_evaluation.h>
 
 #include <sstream>
 
 namespace Nodus
 {
+  namespace
+  {
+    /// Points this near the surface of a body, in cells, are on it.
+    constexpr double on_surface = 1e-3;
+
+    double overlap_limit(const ContactPairParameters &pair, const ContactSurfaces &surfaces, const unsigned int p)
+    {
+      return pair.start.overclosure_limit > 0. ? pair.start.overclosure_limit : 0.5 * surfaces.face_size(p);
+    }
+
+    std::string advice(const unsigned int pair)
+    {
+      return "; move the bodies apart, or raise 'Contact pair " + std::to_string(pair + 1) +
+             "/Overclosure limit' if this is meant";
+    }
+
+    /// Which of the points are inside the bodies named beside them (indices), not on their surfaces. Collective.
+    std::vector<char> are_inside(const std::vector<Point>        &points,
+                                 const std::vector<unsigned int> &body,
+                                 const Bodies                    &bodies,
+                                 const dealii::Mapping<dim>      &mapping)
+    {
+      dealii::Utilities::MPI::RemotePointEvaluation<dim> places;
+      places.reinit(points, bodies.triangulation(), mapping);
+      std::vector<unsigned int> found, buffer; // bodies, by point and cell around it, from 1
+      places.evaluate_and_process<unsigned int>(
+          found,
+          buffer,
+          [&](const auto &values, const auto &data)
+          {
+            for (unsigned int i = 0; i < data.cells.size(); ++i)
+            {
+              const typename Bodies::Triangulation::active_cell_iterator cell(
+                  &bodies.triangulation(), data.cells[i].first, data.cells[i].second);
+              for (unsigned int q = data.reference_point_ptrs[i]; q < data.reference_point_ptrs[i + 1]; ++q)
+              {
+                const Point &at      = data.reference_point_values[q];
+                bool         outside = false;
+                for (unsigned int f = 0; f < 2 * dim; ++f)
+                  outside = outside || (cell->face(f)->at_boundary() && std::abs(at[f / 2] - f % 2) < on_surface);
+                values[q] = outside ? 0 : cell->material_id() + 1;
+              }
+            }
+          });
+      std::vector<char> inside(points.size(), false);
+      const auto       &first = places.get_point_ptrs();
+      for (unsigned int i = 0; i < points.size(); ++i)
+        for (unsigned int q = first[i]; q < first[i + 1]; ++q)
+          inside[i] = inside[i] || found[q] == body[i] + 1;
+      return inside;
+    }
+  } // namespace
+
   void refuse_overlap(const std::vector<ContactPairParameters> &pairs,
                       const ContactSurfaces                    &surfaces,
                       const Pairing                            &pairing,
@@ -28,8 +85,7 @@ namespace Nodus
     const MPI_Comm communicator = surfaces.layout().communicator;
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
-      const auto  &start = pairs[p].start;
-      const double limit = start.overclosure_limit > 0. ? start.overclosure_limit : 0.5 * surfaces.face_size(p);
+      const double limit = overlap_limit(pairs[p], surfaces, p);
       const auto   worst = dealii::Utilities::MPI::min_max_avg(deepest[p], communicator);
       if (worst.max <= limit)
         continue;
@@ -37,9 +93,55 @@ namespace Nodus
         where[p].clear();
       std::ostringstream message;
       message << "the bodies overlap at the start: " << loci(pairs, surfaces, where[p], 1).front() << " is "
-              << worst.max << " inside the master, the limit is " << limit
-              << "; move the bodies apart, or raise 'Contact pair " << p + 1 << "/Overclosure limit' if this is meant";
+              << worst.max << " inside the master, the limit is " << limit << advice(p);
       throw InputError(message.str());
     }
+  }
+
+  void refuse_hidden_overlap(const std::vector<ContactPairParameters> &pairs,
+                             const ContactSurfaces                    &surfaces,
+                             const Bodies                             &bodies,
+                             const dealii::Mapping<dim>               &mapping)
+  {
+    const auto body_of = [&](const unsigned int p, const SurfaceSide side)
+    { return (side == slave_side ? pairs[p].slave : pairs[p].master).body - 1; };
+    const auto          other = [](const SurfaceSide side) { return side == slave_side ? master_side : slave_side; };
+    std::vector<double> limits;
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+      limits.push_back(overlap_limit(pairs[p], surfaces, p));
+    const std::vector<Point>    x            = surfaces.positions(std::vector<Vector3>(surfaces.nodes().size()));
+    const std::vector<DeepNode> nodes        = find_deep_nodes(surfaces,
+                                                        x,
+                                                        limits,
+                                                        [&](const unsigned int p, const SurfaceSide side)
+                                                        { return bodies.bounding_box(body_of(p, other(side))); });
+    const MPI_Comm              communicator = surfaces.layout().communicator;
+    if (dealii::Utilities::MPI::sum(static_cast<unsigned int>(nodes.size()), communicator) == 0)
+      return;
+    std::vector<Point>        points;
+    std::vector<unsigned int> body;
+    for (const DeepNode &node : nodes)
+    {
+      points.push_back(node.ahead); // where a cell of its own body would be found as well, no other one is looked for
+      body.push_back(body_of(node.pair, other(node.side)));
+    }
+    const std::vector<char> inside  = are_inside(points, body, bodies, mapping);
+    double                  deepest = 0.;
+    std::string             text;
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      if (inside[i] && nodes[i].depth > deepest)
+      {
+        const DeepNode    &node = nodes[i];
+        std::ostringstream message;
+        deepest = node.depth;
+        message << "the bodies overlap at the start: " << (node.side == slave_side ? "slave" : "master") << " node "
+                << coordinates(node.x) << " of " << pair_label(pairs, node.pair) << " is " << node.depth
+                << " inside the " << (node.side == slave_side ? "master" : "slave") << ", the limit is "
+                << limits[node.pair] << advice(node.pair);
+        text = message.str();
+      }
+    const auto worst = dealii::Utilities::MPI::min_max_avg(deepest, communicator);
+    if (worst.max > 0.)
+      throw InputError(dealii::Utilities::MPI::broadcast(communicator, text, worst.max_index));
   }
 } // namespace Nodus

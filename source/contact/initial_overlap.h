@@ -3,10 +3,15 @@
 
 #include <nodus/parameters/parameters.h>
 
+#include <nodus/base/types.h>
+
+#include <deal.II/fe/mapping.h>
+
 #include <vector>
 
 namespace Nodus
 {
+  class Bodies;
   class ContactSurfaces;
   class Pairing;
 
@@ -16,6 +21,14 @@ namespace Nodus
                       const ContactSurfaces                    &surfaces,
                       const Pairing                            &pairing,
                       const std::vector<double>                &distance);
+
+  /// Refuses bodies that overlap so far that pairing does not see it: nodes of a pair that are behind the other surface
+  /// by more than the same limit, and in a cell of the other body. At rest. Collective. @throws InputError on every
+  /// rank
+  void refuse_hidden_overlap(const std::vector<ContactPairParameters> &pairs,
+                             const ContactSurfaces                    &surfaces,
+                             const Bodies                             &bodies,
+                             const dealii::Mapping<dim>               &mapping);
 } // namespace Nodus
 
 #endif

@@ -291,15 +291,17 @@ namespace Nodus
     visited_.assign(1, code());
   }
 
-  Status::Violation Status::frozen_violation(const StatusInput &input) const
+  Status::Violation Status::violation(const StatusInput &input, const std::vector<char> &sites) const
   {
     const std::vector<double> largest = largest_pressures(input);
     Violation                 result;
     for (unsigned int k = 0; k < input.pressure.size(); ++k)
-      if (surfaces_.is_owned(k) && frozen_[k])
+      if (surfaces_.is_owned(k) && sites[k])
       {
-        double size;
-        if (contradiction(input, k, largest[surfaces_.pair(k)], size) == Contradiction::none)
+        double              size;
+        const Contradiction c           = contradiction(input, k, largest[surfaces_.pair(k)], size);
+        const bool          of_friction = c == Contradiction::over_cone || c == Contradiction::against_slip;
+        if (c == Contradiction::none || (of_friction && projected(k)))
           continue;
         ++result.sites;
         if (size > result.value)

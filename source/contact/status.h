@@ -215,15 +215,28 @@ namespace Nodus
     {
       regularised_ = true;
     }
-    /// Largest violation of the sites that were frozen in this loop, relative to the pressure of the pair or to the
-    /// cone, where it is, and how many have one. Collective.
+    /// The laws that @p other solves now: regularised or not, with friction held or not.
+    void take_laws(const Status &other)
+    {
+      regularised_ = other.regularised_;
+      hold_        = other.hold_;
+    }
+    /// Largest violation of all sites, or of those that were frozen in this loop, relative to the pressure of the pair
+    /// or to the cone, where it is, and how many have one. Collective.
     struct Violation
     {
       double       value = 0.;
       unsigned int site  = dealii::numbers::invalid_unsigned_int; ///< on the rank that owns it, invalid on others
       unsigned int sites = 0;                                     ///< on all ranks
     };
-    Violation frozen_violation(const StatusInput &input) const;
+    Violation violation(const StatusInput &input) const
+    {
+      return violation(input, std::vector<char>(now_.contact.size(), true));
+    }
+    Violation frozen_violation(const StatusInput &input) const
+    {
+      return violation(input, frozen_);
+    }
 
     /// The state that it refers to has been set to another one: what follows from it is found anew. Collective.
     void resume()
@@ -264,6 +277,7 @@ namespace Nodus
     /// How a site contradicts its status, and by how much: relative to @p pressure of the pair, or to the cone.
     Contradiction       contradiction(const StatusInput &input, unsigned int site, double pressure, double &size) const;
     std::vector<double> largest_pressures(const StatusInput &input) const;
+    Violation           violation(const StatusInput &input, const std::vector<char> &sites) const;
     void                find_period(Update &update);
 
     const std::vector<ContactPairParameters> &pairs_;

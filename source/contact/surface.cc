@@ -30,7 +30,6 @@ namespace Nodus
       , directory_(dof_handler, pairs.size())
       , slave_faces_(pairs.size())
       , master_faces_(pairs.size())
-      , face_size_(pairs.size(), 0.)
   {
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
@@ -191,14 +190,23 @@ namespace Nodus
 
   void ContactSurfaces::measure_faces()
   {
-    const std::vector<Point> X = positions(std::vector<Vector3>(nodes_.size()));
+    const std::vector<Point> X         = positions(std::vector<Vector3>(nodes_.size()));
+    const auto               mean_size = [&](const std::vector<std::vector<SurfaceFace>> &faces, const SurfaceSide side)
+    {
+      std::vector<double> sizes(n_pairs(), 0.);
+      for (unsigned int p = 0; p < n_pairs(); ++p)
+        for (const auto &face : faces[p])
+          if (face.owner == rank_)
+            sizes[p] += std::sqrt(FaceGeometry(face, FaceShape(degree_, 0.5, 0.5), X).area_vector().norm());
+      dealii::Utilities::MPI::sum(sizes, communicator_, sizes);
+      for (unsigned int p = 0; p < n_pairs(); ++p)
+        sizes[p] /= std::max(directory_.size(p, side), 1u);
+      return sizes;
+    };
+    face_size_   = mean_size(slave_faces_, slave_side);
+    larger_face_ = mean_size(master_faces_, master_side);
     for (unsigned int p = 0; p < n_pairs(); ++p)
-      for (const auto &face : slave_faces_[p])
-        if (face.owner == rank_)
-          face_size_[p] += std::sqrt(FaceGeometry(face, FaceShape(degree_, 0.5, 0.5), X).area_vector().norm());
-    dealii::Utilities::MPI::sum(face_size_, communicator_, face_size_);
-    for (unsigned int p = 0; p < n_pairs(); ++p)
-      face_size_[p] /= directory_.size(p, slave_side);
+      larger_face_[p] = std::max(larger_face_[p], face_size_[p]);
   }
 
   void ContactSurfaces::move_rigid_masters(const double begin, const double end)

@@ -215,6 +215,11 @@ namespace Nodus
     {
       return face_size_[pair];
     }
+    /// The same of the side with the larger faces.
+    double larger_face(const unsigned int pair) const
+    {
+      return larger_face_[pair];
+    }
     const BlockLayout &layout() const
     {
       return layout_;
@@ -222,6 +227,10 @@ namespace Nodus
 
     /// The master of a pair without master faces, or nullptr.
     const RigidSurface *rigid_master(const unsigned int pair) const
+    {
+      return rigid_masters_[pair].get();
+    }
+    RigidSurface *rigid_master(const unsigned int pair)
     {
       return rigid_masters_[pair].get();
     }
@@ -345,7 +354,7 @@ namespace Nodus
     Sites                                      sites_;
     std::vector<std::vector<SurfaceFace>>      slave_faces_, master_faces_;
     std::vector<std::unique_ptr<RigidSurface>> rigid_masters_; ///< of each pair, or nullptr
-    std::vector<double>                        face_size_;
+    std::vector<double>                        face_size_, larger_face_;
     Vector                                     fetched_at_; ///< displacement
     Held                                       held_;
     BlockLayout                                layout_;

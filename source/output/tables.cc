@@ -72,6 +72,8 @@ namespace Nodus
   {
     for (const char *name : remedy_names)
       rows_.contact += ',' + std::string(name);
+    for (const char *name : measure_names)
+      rows_.contact += ',' + std::string(name) + ',' + name + " tolerance";
     rows_.contact += '\n';
     make_results_folder(folder, communicator);
   }
@@ -82,7 +84,8 @@ namespace Nodus
                    const std::vector<Reaction>          &reactions,
                    const std::vector<RigidBodyMotion>   &rigid_bodies,
                    const Energies                       &energies,
-                   const IterationCounts                &counts)
+                   const IterationCounts                &counts,
+                   const Verdict                        &verdict)
   {
     auto contact_rows = row();
     for (const auto &pair : contact)
@@ -99,6 +102,8 @@ namespace Nodus
       contact_rows << ',' << pair.longest_cycle << ',' << counts.fallbacks << ',' << counts.cut_backs;
       for (const unsigned int n : counts.remedies)
         contact_rows << ',' << n;
+      for (const Verdict::Finding &finding : verdict)
+        contact_rows << ',' << finding.value << ',' << finding.tolerance;
       contact_rows << '\n';
     }
     rows_.contact += contact_rows.str();

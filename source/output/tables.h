@@ -2,6 +2,7 @@
 #define nodus_output_tables_h
 
 #include "output/energies.h"
+#include "output/verdict.h"
 #include "solve/newton.h"
 #include <nodus/base/types.h>
 #include <nodus/contact/contact_fields.h>
@@ -36,7 +37,8 @@ namespace Nodus
              const std::vector<Reaction>          &reactions,
              const std::vector<RigidBodyMotion>   &rigid_bodies,
              const Energies                       &energies,
-             const IterationCounts                &counts);
+             const IterationCounts                &counts,
+             const Verdict                        &verdict);
 
     /// One iterate of Newton's method, kept until the next add() or add_failure().
     struct Iteration

@@ -35,6 +35,26 @@ namespace Nodus
         const char *usual = ""; ///< the default of deal.II's function
       };
 
+      /// Of two arguments the first is smaller: deal.II looks at that in debug mode, if at all.
+      struct Order
+      {
+        const char  *name;
+        unsigned int smaller, larger;
+      };
+      constexpr Order orders[] = {{"hyper_cube", 0, 1},
+                                  {"subdivided_hyper_cube", 1, 2},
+                                  {"cylinder_shell", 1, 2},
+                                  {"hyper_shell", 1, 2},
+                                  {"half_hyper_shell", 1, 2},
+                                  {"quarter_hyper_shell", 1, 2},
+                                  {"concentric_hyper_shells", 1, 2},
+                                  {"hyper_cube_with_cylindrical_hole", 0, 1},
+                                  {"plate_with_a_hole", 0, 1},
+                                  {"enclosed_hyper_cube", 0, 1},
+                                  {"hyper_L", 0, 1},
+                                  {"torus", 1, 0},
+                                  {"moebius", 3, 2}};
+
       struct Generator
       {
         const char           *name;
@@ -300,6 +320,12 @@ namespace Nodus
         if (!is_of(expected[i].kind, given[i]))
           wrong = "has '" + given[i] + "' for argument " + std::to_string(i + 1) + " of " + name + ", " +
                   expected[i].meaning + ", which must be " + in_words(expected[i].kind);
+      for (const Order &order : orders)
+        if (wrong.empty() && order.name == name &&
+            dealii::Utilities::string_to_double(given[order.smaller]) >=
+                dealii::Utilities::string_to_double(given[order.larger]))
+          wrong = "has " + given[order.smaller] + " for " + expected[order.smaller].meaning + " of " + name +
+                  ", which must be smaller than the " + given[order.larger] + " for " + expected[order.larger].meaning;
       if (!wrong.empty())
         wrong += "; give, separated by ':', " + arguments(name) + "; for example " + generator->example;
       return wrong;

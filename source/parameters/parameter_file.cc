@@ -134,6 +134,13 @@ namespace Nodus
     std::ifstream stream(file_);
     if (!stream)
       throw InputError(file_ + ": cannot open the parameter file; check its name and the folder nodus is started in");
+    char mark[3] = {}; // of the byte order, which some editors begin a file with
+    stream.read(mark, 3);
+    if (std::string(mark, 3) != "\xef\xbb\xbf")
+    {
+      stream.clear();
+      stream.seekg(0);
+    }
     if (std::filesystem::path(file_).extension() == ".json")
       read_json(stream);
     else
@@ -162,6 +169,9 @@ namespace Nodus
 
   void ParameterFile::read_statement(const std::string &line, const std::string &origin, std::string &section)
   {
+    if (line.substr(0, line.find('=')).find("\xc2\xa0") != std::string::npos)
+      throw InputError(origin + ": there is a non-breaking space, as word processors and web pages write them; "
+                                "replace it by a blank");
     const auto        blank = line.find_first_of(" \t");
     const std::string word  = line.substr(0, blank);
     const std::string rest  = blank == std::string::npos ? "" : trim(line.substr(blank));

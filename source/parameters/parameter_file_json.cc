@@ -37,12 +37,37 @@ namespace Nodus
       }
       return text;
     }
+
+    /// Boost calls itself once for each object or list inside another one, as deep as they are.
+    void refuse_depth(const std::string &text, const std::string &file)
+    {
+      constexpr int deepest = 20;
+      int           depth   = 0;
+      unsigned int  line    = 1;
+      bool          quoted  = false;
+      for (std::size_t i = 0; i < text.size(); ++i)
+        if (text[i] == '\n')
+          ++line;
+        else if (quoted && text[i] == '\\')
+          ++i;
+        else if (text[i] == '"')
+          quoted = !quoted;
+        else if (!quoted && (text[i] == '{' || text[i] == '['))
+        {
+          if (++depth > deepest)
+            throw InputError(file + ':' + std::to_string(line) + ": more than " + std::to_string(deepest) +
+                             " objects and lists inside each other; subsections of nodus are two deep");
+        }
+        else if (!quoted && (text[i] == '}' || text[i] == ']'))
+          --depth;
+    }
   } // namespace
 
   void ParameterFile::read_json(std::istream &stream)
   {
     const std::string text(std::istreambuf_iterator<char>(stream), {});
-    ptree             tree;
+    refuse_depth(text, file_);
+    ptree tree;
     try
     {
       std::istringstream copy(text);

@@ -13,17 +13,19 @@ namespace Nodus
   {
     using namespace ParameterKeys;
 
-    /// Beyond these what has 'converged' says nothing: with a force tolerance of 1 no load need be carried at all. A
-    /// loop with tolerance 1 takes one pass, where changes of the geometry are to be neglected.
-    constexpr double largest_newton_tolerance = 1e-3, largest_loop_tolerance = 1., largest_linear_tolerance = 0.01;
+    /// Beyond these what has 'converged' says nothing: with a force tolerance of 1 no load need be carried at all.
+    constexpr double largest_newton_tolerance = 1e-3, largest_loop_tolerance = 0.01, largest_linear_tolerance = 0.01;
 
     Patterns::Double at_most(const double limit)
     {
       return Patterns::Double(std::numeric_limits<double>::min(), limit);
     }
 
-    const Names<LoopParameters::Mode> mode_names = {{LoopParameters::Mode::fixed_point, "fixed point"},
-                                                    {LoopParameters::Mode::newton, "newton"}};
+    const Names<LoopParameters::Mode> mode_names          = {{LoopParameters::Mode::fixed_point, "fixed point"},
+                                                             {LoopParameters::Mode::newton, "newton"}};
+    const Names<LoopParameters::Mode> geometry_mode_names = {{LoopParameters::Mode::fixed_point, "fixed point"},
+                                                             {LoopParameters::Mode::newton, "newton"},
+                                                             {LoopParameters::Mode::once, "once"}};
 
     const Names<LinearSolverParameters::Type> solver_names = {{LinearSolverParameters::Type::automatic, "automatic"},
                                                               {LinearSolverParameters::Type::direct, "direct"},
@@ -34,14 +36,23 @@ namespace Nodus
         {AdaptivityParameters::Marking::fixed_fraction, "fixed fraction"},
         {AdaptivityParameters::Marking::target_error, "target error"}};
 
-    void add(ParameterHandler &prm, LoopParameters &loop, const std::string &mode, const std::string &tolerance)
+    void add(ParameterHandler                  &prm,
+             LoopParameters                    &loop,
+             const std::string                 &mode,
+             const std::string                 &tolerance,
+             const Names<LoopParameters::Mode> &names = mode_names)
     {
+      const bool may_be_once = names.size() > mode_names.size();
       add_choice(prm,
                  "Mode",
                  loop.mode,
-                 mode_names,
+                 names,
                  "fixed point: a loop around Newton's method; newton: " + mode +
-                     " in each Newton iteration, with loops as the fallback where that stalls [-].");
+                     " in each Newton iteration, with loops as the fallback where that stalls" +
+                     (may_be_once
+                          ? "; once: as the increment begins, for displacements that are small against the faces"
+                          : "") +
+                     " [-].");
       prm.add_parameter("Maximum passes", loop.maximum_passes, "Passes before the increment is cut [-].", at_least_one);
       if (!tolerance.empty())
         prm.add_parameter("Tolerance", loop.tolerance, tolerance, at_most(largest_loop_tolerance));
@@ -216,11 +227,14 @@ namespace Nodus
 
   void ParameterKeys::add_solution(ParameterHandler &prm, Parameters &parameters)
   {
-    add_subsection(prm,
-                   "Geometry loop",
-                   parameters.geometry_loop,
-                   "projections, normals and areas are renewed and linearised",
-                   "Change of the displacement in a pass, relative to the displacement of the increment [-].");
+    add_subsection(
+        prm,
+        "Geometry loop",
+        parameters.geometry_loop,
+        "projections, normals and areas are renewed and linearised",
+        "Out of balance where the geometry is that of the last solution: nodal forces relative to the largest, gap "
+        "and slip relative to the displacement of the step, friction law absolute [-].",
+        geometry_mode_names);
     add_subsection(prm,
                    "Threshold loop",
                    parameters.threshold_loop,
@@ -242,7 +256,7 @@ namespace Nodus
 
   std::string text_of(const LoopParameters::Mode mode)
   {
-    return text_of(mode, mode_names);
+    return text_of(mode, geometry_mode_names);
   }
 
   std::string text_of(const LinearSolverParameters::Type type)

@@ -30,6 +30,7 @@ namespace Nodus
     void        begin();
     void        validate();
     void        report_remedies();
+    void        report_verdicts();
     std::string report_profile(bool converged);
 
     const Parameters parameters;
@@ -77,7 +78,7 @@ namespace Nodus
       return checkpointing.read(path);
     {
       const auto timer = journal.profile.time(Phase::pairing);
-      model.contact->begin(states.now.unknowns);
+      model.begin_contact(states.now);
       states.committed = states.now;
     }
     results.write_initial_state();
@@ -108,6 +109,7 @@ namespace Nodus
       throw;
     }
     report_remedies();
+    report_verdicts();
     throw_on_every_rank(report_profile(true), model.communicator);
     journal.console.line("Results: " + parameters.output.results_folder);
   }
@@ -125,6 +127,15 @@ namespace Nodus
     }
     if (!text.empty())
       journal.console.line("\nTried where something failed, times: " + text);
+  }
+
+  /// Prints what came closest to its tolerance where states were measured anew.
+  void ContactProblem::Implementation::report_verdicts()
+  {
+    if (journal.judged > 0)
+      journal.console.line("\nJudged anew: " + std::to_string(journal.judged) +
+                           (journal.judged == 1 ? " state holds" : " states hold") +
+                           "; closest to its tolerance came " + journal.verdicts.text(journal.verdicts.worst()));
   }
 
   /// Prints the times so far, and more where it was asked for. @returns what went wrong with profile.json, on rank 0.

@@ -17,8 +17,6 @@ namespace Nodus
 {
   namespace
   {
-    /// Forces below this fraction of stiffness times displacement are not resolved to the tolerance of Newton (1e-8).
-    constexpr double relative_force_floor = 1e-5;
     /// Relative force residual up to which an iterate right after a prescribed motion has all its statuses tested.
     constexpr double settled_force = 1e-3;
   } // namespace
@@ -244,7 +242,34 @@ namespace Nodus
                               (surplus > 0 ? "more" : "less") + " than multipliers: the state is not stable");
     // The solver leaves prescribed components alone: they take what the constraints still ask for.
     constraints_->distribute(correction.block(0));
+    limit_step(correction);
     return report.iterations;
+  }
+
+  /// A correction that takes nodes through the other surface of their pair, to where pairing does not see that, is
+  /// shortened: they end a little behind it, and contact acts.
+  void Equilibrium::limit_step(const BlockVector &correction)
+  {
+    step_limit_ = 1.;
+    const ContactSurfaces &surfaces = model_.contact->surfaces();
+    if (surfaces.n_pairs() == 0 || !model_.parameters.strategy.uses(Remedy::limited_step))
+      return;
+    double seen = surfaces.face_size(0); // no step as short as this is too long
+    for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
+    {
+      const double asked = model_.parameters.contact_pairs[p].search_distance;
+      seen               = std::min({seen, surfaces.face_size(p), asked > 0. ? 0.5 * asked : surfaces.face_size(p)});
+    }
+    if (model_.rigid_bodies.size() == 0 && largest_entry(correction.block(0)) <= seen)
+      return;
+    move(1., correction);
+    const double part = model_.contact->visible_part(iterate_.block(0), states_.now.unknowns.block(0));
+    if (part == 1.)
+      return;
+    journal_.count(Remedy::limited_step);
+    journal_.console.remark("the correction would take bodies through each other unseen: " + dealii::Utilities::to_string(part) +
+                            " of it is taken");
+    step_limit_ = part;
   }
 
   void Equilibrium::move(const double factor, const BlockVector &correction)
@@ -253,8 +278,9 @@ namespace Nodus
       journal_.count(Remedy::shorter_step);
     states_.now.unknowns = iterate_;
     states_.now.rigid    = rigid_iterate_;
-    states_.now.unknowns.add(factor, correction);
-    model_.rigid_bodies.advance(factor, driven_.correction());
+    const double part = factor * step_limit_;
+    states_.now.unknowns.add(part, correction);
+    model_.rigid_bodies.advance(part, driven_.correction());
     model_.rigid_bodies.move(states_.now.unknowns.block(0));
   }
 

@@ -44,6 +44,9 @@ namespace Nodus
   class Equilibrium : public NewtonProblem
   {
   public:
+    /// Forces below this fraction of stiffness times displacement are not resolved to the tolerance of Newton (1e-8).
+    static constexpr double relative_force_floor = 1e-5;
+
     /// All outlive it.
     Equilibrium(Model &model, Journal &journal, States &states);
 
@@ -117,6 +120,7 @@ namespace Nodus
 
   private:
     Norms       assemble_contact();
+    void        limit_step(const BlockVector &correction);
     void        warn_of_free_motions();
     std::string unknown_locus(DoFIndex flat_index) const;
     std::string ways_to_hold(const std::string &first) const;
@@ -139,6 +143,7 @@ namespace Nodus
     DoFIndex                                 null_pivot_        = dealii::numbers::invalid_dof_index;
     bool                                     singular_          = false;
     bool                                     motions_unknown_   = false; ///< an interval begins
+    double                                   step_limit_        = 1.; ///< part of the correction that may be taken
     double                                   prescribed_before_ = 0.; ///< still to be met at the last iterate, relative
   };
 } // namespace Nodus

@@ -88,6 +88,9 @@ namespace Nodus
                    journal_.diagnosis.add(row);
                    heed_signals_();
                    counts.newton += iteration > 0;
+                   corrections_ += iteration > 0;
+                   if (iteration == 0 && pass.threshold == 1 && pass.status == 1)
+                     renewed_ = std::max(norms.force, norms.contact);
                    counts.krylov += krylov;
                    journal_.profile.newton_iterations += iteration > 0;
                    journal_.profile.krylov_iterations += krylov;
@@ -99,6 +102,7 @@ namespace Nodus
     paired_before_ = paired_;
     paired_        = states_.now.unknowns.block(0);
     rigid_paired_  = states_.now.rigid;
+    corrections_   = 0;
     equilibrium_.pair();
   }
 
@@ -146,11 +150,10 @@ namespace Nodus
     ContactInterface &contact = *model_.contact;
     if (!contact.has_friction())
       return loop.finished(0., "");
-    const auto timer = journal_.profile.time(Phase::status);
-    contact.update_slip_rates(equilibrium_.increment().duration());
+    const auto                timer    = journal_.profile.time(Phase::status);
     Status                   &status   = contact.status();
+    const Status::Change      change   = contact.threshold_change(equilibrium_.increment().duration());
     const std::vector<double> pressure = contact.pressure();
-    const Status::Change      change   = status.threshold_change(pressure);
     const std::string         worst    = contact.locus(change.site);
     const auto                owned    = [&](const std::vector<double> &values)
     {
@@ -187,18 +190,22 @@ namespace Nodus
   bool IncrementLoops::geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing)
   {
     ++journal_.counts.geometry;
-    if (equilibrium_.merged().geometry)
+    if (equilibrium_.merged().geometry || model_.parameters.geometry_loop.mode == LoopParameters::Mode::once)
       return true;
     const auto             timer    = journal_.profile.time(Phase::pairing);
     const ContactSurfaces &surfaces = model_.contact->surfaces();
     Vector                &u        = states_.now.unknowns.block(0);
     std::string            worst;
     const double           change = largest_difference(surfaces, u, paired_, &worst);
-    const double           step   = largest_difference(surfaces, paired_, states_.committed.unknowns.block(0));
-    const double           value  = change <= 1e-12 * model_.length_scale ? 0. : step > 0. ? change / step : 1.;
+    // what the solution of the pass before leaves out of balance with the geometry that it leads to
+    const bool   first = loop.counter() == 0;
+    const double value = corrections_ == 0 ? 0. : first ? std::max(1., renewed_) : renewed_;
 
     std::ostringstream text;
-    text << "geometry changes by " << value << " of the step, most at " << worst;
+    if (first)
+      text << "geometry: of the last increment so far; it changes most at " << worst;
+    else
+      text << "geometry: renewed, the last pass left " << renewed_ << " out of balance; it changes most at " << worst;
     journal_.console.remark(text.str());
     note_pass(loop, value, worst);
     const double before = loop.value();

@@ -41,6 +41,8 @@ namespace Nodus
     Vector                          paired_, paired_before_; ///< displacements of this and the previous pairing
     std::vector<RigidBodies::State> rigid_paired_;           ///< at this pairing
     unsigned int                    geometry_cycles_ = 0;    ///< with period 2, in the geometry loop at hand
+    double                          renewed_         = 0.;   ///< norm that this pass of the geometry loop began with
+    unsigned int                    corrections_     = 0;    ///< of Newton, in this pass
   };
 } // namespace Nodus
 

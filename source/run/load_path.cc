@@ -21,6 +21,7 @@ namespace Nodus
   LoadPath::LoadPath(const RunParts &parts)
       : parts_(parts)
       , audit_(parts.model, parts.journal, parts.states, parts.equilibrium)
+      , judge_(parts.model, parts.states, parts.equilibrium)
       , first_(parts.path.increment())
       , never_closed_(parts.model.contact->surfaces().n_pairs(), true)
   {
@@ -39,6 +40,7 @@ namespace Nodus
       if (mesh_repetitions_ < adaptivity.repetitions && parts_.adaptation.adapt())
       {
         ++mesh_repetitions_;
+        judge_.begin_on_mesh();
         parts_.journal.console.remark("the increment is repeated on the new mesh");
         continue;
       }
@@ -47,7 +49,10 @@ namespace Nodus
       finish(callback);
       if (adaptivity.interval > 0 && increment % adaptivity.interval == 0 && !path.finished() &&
           parts_.adaptation.adapt())
+      {
+        judge_.begin_on_mesh();
         restore_equilibrium();
+      }
       if (interval > 0 && increment % interval == 0)
         parts_.checkpointing.write(path);
     }
@@ -68,6 +73,7 @@ namespace Nodus
     {
       parts_.strategy.solve_increment();
       check_stabilised_motion(parts_.model, parts_.states);
+      judge();
       return true;
     }
     catch (const SolverFailure &failure)
@@ -90,6 +96,20 @@ namespace Nodus
       ++cut_backs_;
       return false;
     }
+  }
+
+  /// Nothing is committed that does not hold where it is measured anew. @throws SolverFailure
+  void LoadPath::judge()
+  {
+    Journal       &journal = parts_.journal;
+    const auto     timer   = journal.profile.time(Phase::judgement);
+    const Verdict &verdict = journal.verdict = judge_.judge();
+    if (!verdict.holds())
+      throw SolverFailure("the loops have converged, but the state does not hold where it is measured anew: " +
+                              verdict.text(verdict.worst()),
+                          SolverFailure::Kind::judged);
+    journal.verdicts.merge(verdict);
+    ++journal.judged;
   }
 
   /// The increment at hand has converged.

@@ -4,6 +4,7 @@
 #include "run/checkpointing.h"
 #include "run/energy_audit.h"
 #include "run/failure_report.h"
+#include "run/judge.h"
 #include "run/load_stepping.h"
 #include "run/mesh_adaptation.h"
 #include "run/results.h"
@@ -40,6 +41,7 @@ namespace Nodus
   private:
     bool              solve();
     void              finish(const std::function<void(unsigned int, double)> &callback);
+    void              judge();
     void              commit();
     void              restore_equilibrium();
     void              warn_of_lost_partners() const;
@@ -50,6 +52,7 @@ namespace Nodus
 
     RunParts          parts_;
     EnergyAudit       audit_;
+    Judge             judge_;
     unsigned int      first_;                ///< increment of this run
     std::vector<bool> never_closed_;         ///< by pair
     unsigned int      cut_backs_        = 0; ///< since the last increment that converged

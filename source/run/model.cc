@@ -1,5 +1,6 @@
 #include "run/model.h"
 #include "bulk/rigid_material.h"
+#include "contact/initial_overlap.h"
 #include "mesh/sides.h"
 
 #include <deal.II/base/mpi.h>
@@ -112,11 +113,21 @@ namespace Nodus
     rigid_bodies.set_time(t);
   }
 
+  void Model::begin_contact(State &now)
+  {
+    contact->begin(now.unknowns);
+    refuse_hidden_overlap(parameters.contact_pairs, contact->surfaces(), bodies, *mapping);
+  }
+
+  double Model::resolved_interference(const double t) const
+  {
+    return std::min(1., t / parameters.load_stepping.interval_ends.front());
+  }
+
   void Model::impose(const Increment &increment)
   {
     set_conditions(increment.end);
-    const double first_interval = parameters.load_stepping.interval_ends.front();
-    contact->begin_increment(increment.begin, increment.end, std::min(1., increment.end / first_interval));
+    contact->begin_increment(increment.begin, increment.end, resolved_interference(increment.end));
     stabilisation->set_increment(increment.begin, increment.end, increment.interval_begin, increment.interval_end);
   }
 

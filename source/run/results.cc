@@ -81,7 +81,8 @@ namespace Nodus
                          table,
                          rigid_motions_,
                          states_.committed.energies,
-                         journal_.counts);
+                         journal_.counts,
+                         journal_.verdict);
     const unsigned int interval = model_.parameters.output.vtu_interval;
     if (vtu_ && (last || (interval > 0 && increment.number % interval == 0)))
       write_state(increment.number, increment.end);

@@ -345,7 +345,7 @@ namespace Nodus
   {
     describe_bodies(model, console);
     describe_conditions(model, console);
-    model.contact->begin(states.now.unknowns);
+    model.begin_contact(states.now);
     states.committed = states.now;
     for (unsigned int pair = 0; pair < model.contact->surfaces().n_pairs(); ++pair)
       describe_pair(model, pair, console);

@@ -17,16 +17,18 @@ namespace Nodus
     regularised_law,
     frozen_statuses,
     shorter_step,
+    limited_step,
     direct_solver
   };
 
-  constexpr std::array<const char *, 8> remedy_names = {{"three loops",
+  constexpr std::array<const char *, 9> remedy_names = {{"three loops",
                                                          "coupled threshold",
                                                          "mixed geometry",
                                                          "mixed thresholds",
                                                          "regularised law",
                                                          "frozen statuses",
                                                          "shorter step",
+                                                         "limited step",
                                                          "direct solver"}};
 
   /// A value for each remedy: how often it was used, whether it may be.

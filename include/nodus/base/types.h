@@ -65,7 +65,8 @@ namespace Nodus
       linear_solver,   ///< the solution of a linear system did not succeed
       status_cycle,
       geometry_cycle,
-      loop_limit ///< not converged in the passes that a loop may take
+      loop_limit, ///< not converged in the passes that a loop may take
+      judged      ///< what the loops found does not hold where it is measured anew
     };
 
     explicit SolverFailure(const std::string &message, const Kind kind = Kind::unspecified)

@@ -274,7 +274,7 @@ namespace Nodus
     std::vector<BodyParameters>              bodies;
     std::vector<BoundaryConditionParameters> boundary_conditions;
     std::vector<ContactPairParameters>       contact_pairs;
-    LoopParameters                           geometry_loop  = {15, 0.01, LoopParameters::Mode::newton};
+    LoopParameters                           geometry_loop  = {15, 1e-5, LoopParameters::Mode::newton};
     LoopParameters                           threshold_loop = {30, 1e-4, LoopParameters::Mode::newton};
     LoopParameters                           status_loop    = {30, 0., LoopParameters::Mode::newton};
     NewtonParameters                         newton;

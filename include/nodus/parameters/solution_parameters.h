@@ -16,11 +16,12 @@ namespace Nodus
     enum class Mode
     {
       fixed_point,
-      newton
+      newton, ///< part of each Newton iteration, no loop
+      once    ///< geometry alone: as the increment begins
     };
     unsigned int maximum_passes = 10;
-    double       tolerance      = 0.;                ///< relative; the status loop has none: no status may change
-    Mode         mode           = Mode::fixed_point; ///< newton: part of each Newton iteration, no loop
+    double       tolerance      = 0.; ///< relative; the status loop has none: no status may change
+    Mode         mode           = Mode::fixed_point;
   };
 
   struct NewtonParameters

@@ -1,0 +1,285 @@
+#include "contact/triangles.h"
+
+#include <deal.II/numerics/rtree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace Nodus
+{
+  namespace
+  {
+    using Box  = dealii::BoundingBox<dim>;
+    using Leaf = std::pair<Box, unsigned int>;
+
+    /// A point this far outside of a triangle (part of its size) still goes through it, lest any slip between two.
+    constexpr double slack = 1e-9;
+
+    Vector3 cross(const Vector3 &a, const Vector3 &b)
+    {
+      return dealii::cross_product_3d(a, b);
+    }
+
+    Box box_of(const std::initializer_list<Point> &points)
+    {
+      return Box(std::vector<Point>(points));
+    }
+
+    double squared_distance(const Box &box, const Point &p)
+    {
+      double d2 = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        const double d = std::max({box.lower_bound(c) - p[c], 0., p[c] - box.upper_bound(c)});
+        d2 += d * d;
+      }
+      return d2;
+    }
+
+    /// Barycentric coordinates of the point of a triangle that is closest to @p p (Ericson 2005, section 5.1.5).
+    std::array<double, 3> closest_point(const Point &p, const Point &a, const Point &b, const Point &c)
+    {
+      const Vector3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+      const double  d1 = ab * ap, d2 = ac * ap, d3 = ab * bp, d4 = ac * bp, d5 = ab * cp, d6 = ac * cp;
+      if (d1 <= 0. && d2 <= 0.)
+        return {{1., 0., 0.}};
+      if (d3 >= 0. && d4 <= d3)
+        return {{0., 1., 0.}};
+      if (d6 >= 0. && d5 <= d6)
+        return {{0., 0., 1.}};
+      const double of_c = d1 * d4 - d3 * d2, of_b = d5 * d2 - d1 * d6, of_a = d3 * d6 - d5 * d4;
+      if (of_c <= 0. && d1 >= 0. && d3 <= 0.)
+        return {{1. - d1 / (d1 - d3), d1 / (d1 - d3), 0.}};
+      if (of_b <= 0. && d2 >= 0. && d6 <= 0.)
+        return {{1. - d2 / (d2 - d6), 0., d2 / (d2 - d6)}};
+      if (const double e = d4 - d3, f = d5 - d6; of_a <= 0. && e >= 0. && f >= 0.)
+        return {{0., 1. - e / (e + f), e / (e + f)}};
+      const double sum = of_a + of_b + of_c;
+      return {{of_a / sum, of_b / sum, of_c / sum}};
+    }
+
+    /// A vector that changes evenly.
+    struct Moving
+    {
+      Vector3 start, change;
+      Moving(const Way &to, const Way &from)
+          : start(to[0] - from[0])
+          , change((to[1] - from[1]) - start)
+      {
+      }
+      Vector3 at(const double t) const
+      {
+        return start + t * change;
+      }
+    };
+
+    /// Where in [0, 1] a cubic polynomial changes its sign, in ascending order, and whether it was positive before.
+    std::vector<std::pair<double, bool>> sign_changes(const std::array<double, 4> &c)
+    {
+      const auto          value = [&](const double t) { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); };
+      std::vector<double> ends{0.};
+      const double        a = 3. * c[3], b = 2. * c[2], discriminant = b * b - 4. * a * c[1];
+      if (discriminant > 0.)
+      {
+        const double        q       = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
+        std::vector<double> extrema = {a != 0. ? q / a : -1., q != 0. ? c[1] / q : -1.};
+        std::sort(extrema.begin(), extrema.end());
+        for (const double t : extrema)
+          if (t > 0. && t < 1.)
+            ends.push_back(t);
+      }
+      ends.push_back(1.);
+      std::vector<std::pair<double, bool>> changes;
+      for (unsigned int i = 0; i + 1 < ends.size(); ++i)
+      {
+        double low = ends[i], high = ends[i + 1];
+        if ((value(low) > 0.) == (value(high) > 0.))
+          continue;
+        const bool positive = value(low) > 0.;
+        for (unsigned int bisection = 0; bisection < 50; ++bisection)
+        {
+          const double middle                             = 0.5 * (low + high);
+          ((value(middle) > 0.) == positive ? low : high) = middle;
+        }
+        changes.emplace_back(high, positive);
+      }
+      return changes;
+    }
+  } // namespace
+
+  std::vector<Crossing> find_crossings(const Way &p, const Way &a, const Way &b, const Way &c)
+  {
+    const Moving q(p, a), e(b, a), f(c, a);
+    // the volume q . (e x f), which vanishes while the point is in the plane of the triangle
+    const Vector3 n[3] = {
+        cross(e.start, f.start), cross(e.start, f.change) + cross(e.change, f.start), cross(e.change, f.change)};
+    const std::array<double, 4> volume = {
+        {q.start * n[0], q.start * n[1] + q.change * n[0], q.start * n[2] + q.change * n[1], q.change * n[2]}};
+    std::vector<Crossing> found;
+    for (const auto &[t, was_outside] : sign_changes(volume))
+    {
+      const Vector3 r = q.at(t), along = e.at(t), across = f.at(t), normal = cross(along, across);
+      const double  area = normal * normal;
+      const double  of_b = cross(r, across) * normal / area, of_c = cross(along, r) * normal / area;
+      if (area > 0. && of_b >= -slack && of_c >= -slack && of_b + of_c <= 1. + slack)
+        found.push_back(
+            {t, was_outside, std::abs((q.change - of_b * e.change - of_c * f.change) * normal) / std::sqrt(area)});
+    }
+    return found;
+  }
+
+  struct Triangles::Tree
+  {
+    explicit Tree(const std::vector<Leaf> &boxes)
+        : leaves(dealii::pack_rtree(boxes))
+    {
+    }
+    decltype(dealii::pack_rtree(std::vector<Leaf>())) leaves;
+  };
+
+  Triangles::Triangles(const std::vector<SurfaceFace> &faces,
+                       const unsigned int              rank,
+                       const unsigned int              degree,
+                       const std::vector<Point>       &x)
+      : x_(x)
+      , normals_(x.size())
+      , on_rim_(x.size(), 0)
+  {
+    std::vector<std::pair<std::array<unsigned int, 2>, unsigned int>> edges; // with the triangle
+    std::vector<Triangle>                                             all;
+    std::vector<char>                                                 own;
+    for (const SurfaceFace &face : faces)
+      for (unsigned int j = 0; j < degree; ++j)
+        for (unsigned int i = 0; i < degree; ++i)
+        {
+          const unsigned int first = i + j * (degree + 1), n[4] = {face.nodes[first],
+                                                                   face.nodes[first + 1],
+                                                                   face.nodes[first + degree + 2],
+                                                                   face.nodes[first + degree + 1]};
+          const bool         turn = face.orientation < 0.;
+          for (const auto &[b, c] : {std::make_pair(1u, 2u), {2u, 3u}})
+          {
+            all.push_back({{{n[0], n[turn ? c : b], n[turn ? b : c]}}, {{false, false, false}}});
+            own.push_back(face.owner == rank);
+          }
+        }
+    std::map<std::array<unsigned int, 2>, unsigned int> count;
+    const auto                                          edge = [](const Triangle &triangle, const unsigned int opposite)
+    {
+      const unsigned int a = triangle.nodes[(opposite + 1) % 3], b = triangle.nodes[(opposite + 2) % 3];
+      return std::array<unsigned int, 2>{{std::min(a, b), std::max(a, b)}};
+    };
+    for (const Triangle &triangle : all)
+    {
+      const Point *const p[3] = {&x[triangle.nodes[0]], &x[triangle.nodes[1]], &x[triangle.nodes[2]]};
+      const Vector3      area = cross(*p[1] - *p[0], *p[2] - *p[0]);
+      for (unsigned int v = 0; v < 3; ++v)
+      {
+        normals_[triangle.nodes[v]] += area;
+        ++count[edge(triangle, v)];
+      }
+    }
+    std::vector<Leaf> leaves;
+    for (unsigned int i = 0; i < all.size(); ++i)
+    {
+      Triangle &triangle = all[i];
+      for (unsigned int v = 0; v < 3; ++v)
+        if (count[edge(triangle, v)] == 1)
+        {
+          triangle.rim[v] = true;
+          for (const unsigned int n : edge(triangle, v))
+            on_rim_[n] = true;
+        }
+      if (!own[i])
+        continue;
+      const Box box = box_of({x[triangle.nodes[0]], x[triangle.nodes[1]], x[triangle.nodes[2]]});
+      if (leaves.empty())
+        box_ = box;
+      else
+        box_.merge_with(box);
+      leaves.emplace_back(box, triangles_.size());
+      nodes_.insert(nodes_.end(), triangle.nodes.begin(), triangle.nodes.end());
+      triangles_.push_back(triangle);
+    }
+    std::sort(nodes_.begin(), nodes_.end());
+    nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+    for (Vector3 &normal : normals_)
+      if (const double length = normal.norm(); length > 0.)
+        normal /= length;
+    tree_ = std::make_unique<Tree>(leaves);
+  }
+
+  Triangles::~Triangles()                     = default;
+  Triangles::Triangles(Triangles &&) noexcept = default;
+
+  Height Triangles::height(const Triangle &triangle, const Point &p) const
+  {
+    const auto  &n     = triangle.nodes;
+    const auto   share = closest_point(p, x_[n[0]], x_[n[1]], x_[n[2]]);
+    Vector3      r(p);
+    Vector3      mean;
+    Height       result;
+    unsigned int at = 3, zeros = 0; // the corner that counts, the edge opposite to which p is nearest to
+    for (unsigned int v = 0; v < 3; ++v)
+    {
+      r -= share[v] * x_[n[v]];
+      mean += share[v] * normals_[n[v]];
+      zeros += share[v] == 0.;
+    }
+    for (unsigned int v = 0; v < 3; ++v)
+      if ((zeros == 1 && share[v] == 0.) || (zeros == 2 && share[v] != 0.))
+        at = v;
+    result.distance = r.norm();
+    result.over     = zeros == 0 || (zeros == 1 ? !triangle.rim[at] : !on_rim_[n[at]]);
+    // inside the triangle its own normal decides, at its edges and corners the mean of those around
+    result.normal = zeros == 0 ? cross(x_[n[1]] - x_[n[0]], x_[n[2]] - x_[n[0]]) : mean;
+    result.behind = r * result.normal < 0.;
+    result.normal /= result.normal.norm();
+    return result;
+  }
+
+  Height Triangles::height(const Point &p, const double reach) const
+  {
+    namespace bgi = boost::geometry::index;
+    Height nearest;
+    nearest.distance = reach;
+    for (auto leaf = tree_->leaves.qbegin(bgi::nearest(p, triangles_.size() + 1)); leaf != tree_->leaves.qend(); ++leaf)
+    {
+      if (squared_distance(leaf->first, p) > nearest.distance * nearest.distance)
+        break; // boxes come in ascending distance
+      if (const Height here = height(triangles_[leaf->second], p); here.distance < nearest.distance)
+        nearest = here;
+    }
+    return nearest.distance < reach ? nearest : Height();
+  }
+
+  std::vector<std::vector<Crossing>> Triangles::crossings(const std::vector<Way>   &ways,
+                                                          const std::vector<Point> &before) const
+  {
+    namespace bgi = boost::geometry::index;
+    std::vector<std::vector<Crossing>> result(ways.size());
+    if (ways.empty())
+      return result;
+    std::vector<Leaf> swept;
+    for (unsigned int i = 0; i < triangles_.size(); ++i)
+    {
+      const auto &n = triangles_[i].nodes;
+      swept.emplace_back(box_of({x_[n[0]], x_[n[1]], x_[n[2]], before[n[0]], before[n[1]], before[n[2]]}), i);
+    }
+    const Tree tree(swept);
+    for (unsigned int w = 0; w < ways.size(); ++w)
+    {
+      const Box around = box_of({ways[w][0], ways[w][1]});
+      for (auto leaf = tree.leaves.qbegin(bgi::intersects(around)); leaf != tree.leaves.qend(); ++leaf)
+      {
+        const auto &n   = triangles_[leaf->second].nodes;
+        const auto  way = [&](const unsigned int v) { return Way{{before[n[v]], x_[n[v]]}}; };
+        for (const Crossing &crossing : find_crossings(ways[w], way(0), way(1), way(2)))
+          result[w].push_back(crossing);
+      }
+    }
+    return result;
+  }
+} // namespace Nodus

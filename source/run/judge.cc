@@ -1,0 +1,365 @@
+#include "run/judge.h"
+#include "contact/free_motions.h"
+#include "mesh/sides.h"
+#include "parallel/largest.h"
+#include "run/state_visitors.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace Nodus
+{
+  namespace
+  {
+    /// Forces, laws and thresholds may violate their equations by so many times what their loop asks for.
+    constexpr double allowance = 10.;
+    /// The resultant of a body and that of a pair, relative; the moment of a pair in forces times mean faces.
+    constexpr double body_tolerance = 1e-6, pair_force_tolerance = 1e-9, pair_moment_tolerance = 0.1;
+    /// Of contradicted statuses, of the largest pressure or of the cone.
+    constexpr double status_tolerance = 1e-3;
+    /// Of the mean face of the side with the larger ones.
+    constexpr double tolerated_depth = 0.25;
+
+    /// Whether the numbers of a State on this rank are finite.
+    struct Finite
+    {
+      Largest largest;
+
+      template <typename T>
+      void sites(const std::vector<T> &values)
+      {
+        double numbers[2 * dim];
+        for (const T &value : values)
+          for (const double *number = numbers, *const end = StateVisitors::write(value, numbers); number != end;
+               ++number)
+            largest.add(*number);
+      }
+      template <typename T>
+      void slaves(const std::vector<T> &values)
+      {
+        sites(values);
+      }
+      void nodes(const Vector &v)
+      {
+        const double *const values = v.trilinos_vector()[0];
+        for (int i = 0; i < v.trilinos_vector().MyLength(); ++i)
+          largest.add(values[i]);
+      }
+      void multipliers(const Vector &v, unsigned int)
+      {
+        nodes(v);
+      }
+      void cells(const SolidAssembler::History &) // the forces follow from them
+      {
+      }
+      void common(const double number)
+      {
+        largest.add(number);
+      }
+      void common(const bool)
+      {
+      }
+      void common(const std::vector<RigidBodies::State> &bodies)
+      {
+        for (const RigidBodies::State &body : bodies)
+        {
+          for (unsigned int c = 0; c < dim; ++c)
+          {
+            largest.add(body.translation[c]);
+            largest.add(body.turn[c]);
+            largest.add(body.prescribed_rotation[c]);
+          }
+          largest.add(body.rotation.norm());
+          for (const double force : body.applied)
+            largest.add(force);
+        }
+      }
+      void common(const Energies &energies)
+      {
+        largest.add(energies.imbalance());
+      }
+    };
+  } // namespace
+
+  Judge::Judge(const Model &model, const States &states, const Equilibrium &equilibrium)
+      : model_(model)
+      , states_(states)
+      , equilibrium_(equilibrium)
+  {
+  }
+
+  void Judge::begin_on_mesh()
+  {
+    contact_.reset();
+    face_.clear();
+  }
+
+  Verdict Judge::judge()
+  {
+    if (!contact_)
+      set_up();
+    Verdict verdict;
+    measure_numbers(verdict);
+    if (!verdict.holds())
+      return verdict;
+    pair_anew();
+    measure_contact(verdict);
+    measure_pairs(verdict);
+    measure_forces(verdict);
+    measure_intrusion(verdict);
+    return verdict;
+  }
+
+  void Judge::set_up()
+  {
+    contact_       = std::make_unique<ContactInterface>(model_.parameters.contact_pairs,
+                                                  model_.pair_stiffness(),
+                                                  model_.parameters.strategy,
+                                                  model_.bodies,
+                                                  model_.dof_handler,
+                                                  *model_.mapping,
+                                                  model_.rigid_bodies,
+                                                  interface_state_);
+    system_.layout = &contact_->surfaces().layout();
+    for (unsigned int p = 0; p < model_.parameters.contact_pairs.size(); ++p)
+      face_.push_back(contact_->surfaces().larger_face(p));
+  }
+
+  void Judge::pair_anew()
+  {
+    const Increment &increment = equilibrium_.increment();
+    const Vector    &start     = states_.committed.unknowns.block(0);
+    unknowns_                  = states_.now.unknowns;
+    interface_state_           = states_.now.contact;
+    contact_->surfaces().set_fixed(model_.boundary_conditions->homogeneous_constraints());
+    contact_->begin_increment(increment.begin, increment.end, model_.resolved_interference(increment.end));
+    contact_->status().take_laws(model_.contact->status());
+    contact_->resume(unknowns_, start);
+    if (model_.parameters.geometry_loop.mode == LoopParameters::Mode::once)
+    {
+      unknowns_.block(0) = start;
+      contact_->pair(unknowns_, start);
+      unknowns_.block(0) = states_.now.unknowns.block(0);
+      contact_->gather(unknowns_, start);
+    }
+    else
+      contact_->pair(unknowns_, start);
+    contact_->set_prescribed();
+    system_.layout->reinit(system_.rhs);
+    contact_->assemble(system_);
+
+    Vector moved(unknowns_.block(0));
+    moved -= start;
+    length_ = std::max(largest_entry(moved), model_.length_scale);
+  }
+
+  /// Of forces and laws: a geometry loop leaves what its tolerance is.
+  double Judge::tolerance(const double of_newton) const
+  {
+    const bool loop = !equilibrium_.merged().geometry; // with once the geometry does not change
+    return allowance * std::max(of_newton, loop ? model_.parameters.geometry_loop.tolerance : 0.);
+  }
+
+  void Judge::measure_numbers(Verdict &verdict) const
+  {
+    Finite finite;
+    visit_members(states_.now, finite);
+    verdict[Measure::numbers].value = std::isinf(finite.largest.on_all_ranks(model_.communicator)) ? 1. : 0.;
+  }
+
+  void Judge::measure_contact(Verdict &verdict)
+  {
+    const Parameters &parameters   = model_.parameters;
+    verdict[Measure::contact_laws] = {contact_->norm(length_), tolerance(parameters.newton.contact_tolerance), ""};
+    const Status::Violation contra = contact_->violation();
+    verdict[Measure::statuses]     = {contra.value, status_tolerance, contact_->locus(contra.site)};
+    verdict[Measure::thresholds]   = {0., allowance * parameters.threshold_loop.tolerance, ""};
+    if (!contact_->has_friction())
+      return;
+    const Status::Change change        = contact_->threshold_change(equilibrium_.increment().duration());
+    verdict[Measure::thresholds].value = change.value;
+    verdict[Measure::thresholds].where = contact_->locus(change.site);
+  }
+
+  void Judge::measure_pairs(Verdict &verdict) const
+  {
+    const ContactSurfaces &surfaces = contact_->surfaces();
+    std::vector<double>    sums(surfaces.n_pairs(), 0.);
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+      if (surfaces.is_owned(s))
+        sums[surfaces.pair(s)] += contact_->residual().jump[s].norm();
+    dealii::Utilities::MPI::sum(sums, model_.communicator, sums);
+    const std::vector<ContactResultants> resultants = contact_->resultants();
+
+    Verdict::Finding &forces = verdict[Measure::pair_forces], &moments = verdict[Measure::pair_moments];
+    forces.tolerance  = pair_force_tolerance;
+    moments.tolerance = pair_moment_tolerance;
+    for (unsigned int p = 0; p < sums.size(); ++p)
+      if (const ContactResultants &r = resultants[p]; sums[p] > 0.)
+      {
+        const std::string where = pair_label(model_.parameters.contact_pairs, p);
+        forces.raise((r.slave_force + r.master_force).norm() / sums[p], where);
+        moments.raise((r.slave_moment + r.master_moment).norm() / (sums[p] * face_[p]), where);
+      }
+  }
+
+  /// Eq. N3, and its sum over each body.
+  void Judge::measure_forces(Verdict &verdict)
+  {
+    const double       t           = equilibrium_.increment().end;
+    const auto        &constraints = model_.boundary_conditions->homogeneous_constraints();
+    const NodalForces &given       = equilibrium_.forces();
+    const Vector       u           = model_.with_ghosts(unknowns_.block(0));
+    Vector             internal(given.internal), external(given.external), contact(given.contact); // their maps
+    model_.solid->forces(u, t, internal, external);
+    external += given.released;
+    external += given.drag;
+    contact = 0.;
+    contact_->add_forces(contact);
+    const double scale = std::max({largest_entry(internal),
+                                   largest_entry(external),
+                                   largest_entry(contact),
+                                   Equilibrium::relative_force_floor * states_.now.stiffness_scale * length_});
+
+    Vector missing(internal);
+    missing -= external;
+    missing += contact;
+    const double rigid = measure_rigid_bodies(missing, scale);
+    for (const auto i : system_.layout->owned[0])
+      if (constraints.is_constrained(i))
+        missing(i) = 0.;
+    missing.compress(dealii::VectorOperation::insert);
+    contact -= external;
+    verdict[Measure::nodes] = {
+        std::max(largest_entry(missing) / scale, rigid), tolerance(model_.parameters.newton.force_tolerance), ""};
+    verdict[Measure::bodies] = measure_bodies(missing, contact, scale);
+
+    Largest     prescribed;
+    const auto &next = model_.boundary_conditions->increment_constraints(u);
+    for (const auto i : system_.layout->owned[0])
+      if (next.is_constrained(i))
+        prescribed.add(next.get_inhomogeneity(i) / length_);
+    verdict[Measure::prescribed] = {
+        prescribed.on_all_ranks(model_.communicator), allowance * model_.parameters.newton.contact_tolerance, ""};
+  }
+
+  /// The resultants of what is @p missing at the free nodes of each body, relative to the forces @p acting on it.
+  Verdict::Finding Judge::measure_bodies(const Vector &missing, const Vector &acting, const double scale) const
+  {
+    constexpr unsigned int n = 7; // force, moment, sum of the lengths of what acts
+    const OwnedNodes       nodes(model_.dof_handler, *model_.mapping);
+    std::vector<double>    sums(n * model_.bodies.size(), 0.);
+    std::vector<Point>     middle;
+    for (unsigned int b = 0; b < model_.bodies.size(); ++b)
+      middle.push_back(model_.bodies.bounding_box(b).center());
+    const auto &owned = system_.layout->owned[0];
+    for (unsigned int i = 0; i < nodes.X.size(); ++i)
+    {
+      const DoFIndex dof = owned.nth_index_in_set(dim * i);
+      Vector3        arm = nodes.X[i] - middle[nodes.body[i]], force, acts;
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        arm[c] += unknowns_.block(0)(dof + c);
+        force[c] = missing(dof + c);
+        acts[c]  = acting(dof + c);
+      }
+      double *const sum    = sums.data() + n * nodes.body[i];
+      const Vector3 moment = dealii::cross_product_3d(arm, force);
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        sum[c] += force[c];
+        sum[dim + c] += moment[c];
+      }
+      sum[2 * dim] += acts.norm();
+    }
+    dealii::Utilities::MPI::sum(sums, model_.communicator, sums);
+    Verdict::Finding worst{0., std::max(body_tolerance, tolerance(model_.parameters.newton.force_tolerance)), ""};
+    for (unsigned int b = 0; b < model_.bodies.size(); ++b)
+    {
+      const auto          ends  = model_.bodies.bounding_box(b).get_boundary_points();
+      const double *const sum   = sums.data() + n * b;
+      const double        force = std::max(sum[2 * dim], scale), size = ends.first.distance(ends.second);
+      worst.raise(std::max(Vector3({sum[0], sum[1], sum[2]}).norm() / force,
+                           Vector3({sum[3], sum[4], sum[5]}).norm() / (force * size)),
+                  "body " + std::to_string(b + 1));
+    }
+    return worst;
+  }
+
+  /// What the @p forces at the nodes of driven rigid bodies leave to their loads at components that are free, relative.
+  double Judge::measure_rigid_bodies(const Vector &forces, const double scale) const
+  {
+    constexpr unsigned int n      = RigidBodies::n_components;
+    const RigidBodies     &bodies = model_.rigid_bodies;
+    std::vector<double>    sums(n * bodies.size(), 0.);
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+      for (const RigidBodies::Node &node : bodies.nodes(b))
+      {
+        Vector3 arm = node.X - bodies.centre(b), force;
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          arm[c] += unknowns_.block(0)(node.dof + c);
+          force[c] = forces(node.dof + c);
+        }
+        const Vector3 moment = dealii::cross_product_3d(arm, force);
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          sums[n * b + c] += force[c];
+          sums[n * b + dim + c] += moment[c];
+        }
+      }
+    dealii::Utilities::MPI::sum(sums, model_.communicator, sums);
+    Largest worst;
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+    {
+      double largest = scale;
+      for (unsigned int c = 0; c < n; ++c)
+      {
+        const double lever = c < dim ? 1. : bodies.extent(b);
+        largest = std::max({largest, std::abs(bodies.load(b)[c]) / lever, std::abs(sums[n * b + c]) / lever});
+      }
+      for (unsigned int c = 0; c < n; ++c)
+        if (bodies.is_free(b, c))
+          worst.add((sums[n * b + c] - bodies.load(b)[c]) / ((c < dim ? 1. : bodies.extent(b)) * largest));
+    }
+    return worst.on_all_ranks(model_.communicator);
+  }
+
+  void Judge::measure_intrusion(Verdict &verdict)
+  {
+    ContactSurfaces     &surfaces = contact_->surfaces();
+    std::vector<Vector3> before, now;
+    surfaces.gather(states_.committed.unknowns.block(0), before);
+    surfaces.gather(unknowns_.block(0), now);
+    std::vector<double> adjusted(surfaces.n_pairs(), 0.), tolerated; // where surfaces are apart or inside by intent
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+      adjusted[surfaces.pair(s)] = std::max(adjusted[surfaces.pair(s)], std::abs(contact_->status().adjustment(s)));
+    dealii::Utilities::MPI::max(adjusted, model_.communicator, adjusted);
+    for (unsigned int p = 0; p < adjusted.size(); ++p)
+      tolerated.push_back(tolerated_depth * face_[p] + adjusted[p]);
+
+    const Increment             &increment  = equilibrium_.increment();
+    const std::vector<Intrusion> intrusions = find_intrusions(
+        surfaces, surfaces.positions(before), surfaces.positions(now), increment.begin, increment.end, tolerated);
+    Verdict::Finding &depth = verdict[Measure::penetration], &passed = verdict[Measure::passed];
+    depth.tolerance = tolerated_depth;
+    for (unsigned int p = 0; p < intrusions.size(); ++p)
+    {
+      const auto &pair = model_.parameters.contact_pairs[p];
+      if (pair.contact_law == ContactPairParameters::ContactLaw::tied)
+        continue;
+      const auto where = [&](const Intrusion::Node &node)
+      {
+        return std::string(node.side == slave_side ? "slave" : "master") + " node " + coordinates(node.X) + " of " +
+               pair_label(model_.parameters.contact_pairs, p);
+      };
+      const Intrusion &intrusion = intrusions[p];
+      depth.raise((intrusion.depth - adjusted[p]) / face_[p], where(intrusion.deepest));
+      if (intrusion.passed > 0)
+        passed.raise(passed.value + intrusion.passed, where(intrusion.first_passed));
+    }
+  }
+} // namespace Nodus

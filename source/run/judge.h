@@ -1,0 +1,51 @@
+#ifndef nodus_run_judge_h
+#define nodus_run_judge_h
+
+#include "contact/intrusion.h"
+#include "output/verdict.h"
+#include "run/equilibrium.h"
+
+#include <memory>
+#include <vector>
+
+namespace Nodus
+{
+  /// Measures a state before it is committed, without what the loops that found it worked with: forces of the bodies
+  /// are integrated anew, the surfaces are paired anew by a contact interface of its own, and how far they are inside
+  /// each other is found from the faces alone (theory section 23).
+  class Judge
+  {
+  public:
+    /// All outlive it.
+    Judge(const Model &model, const States &states, const Equilibrium &equilibrium);
+
+    /// The mesh has changed.
+    void begin_on_mesh();
+    /// Of the state at hand at the end of the increment at hand. Collective.
+    Verdict judge();
+
+  private:
+    void             set_up();
+    void             pair_anew();
+    double           tolerance(double of_newton) const;
+    void             measure_numbers(Verdict &verdict) const;
+    void             measure_contact(Verdict &verdict);
+    void             measure_pairs(Verdict &verdict) const;
+    void             measure_forces(Verdict &verdict);
+    Verdict::Finding measure_bodies(const Vector &missing, const Vector &acting, double scale) const;
+    double           measure_rigid_bodies(const Vector &forces, double scale) const;
+    void             measure_intrusion(Verdict &verdict);
+
+    const Model                      &model_;
+    const States                     &states_;
+    const Equilibrium                &equilibrium_;
+    InterfaceState                    interface_state_;
+    std::unique_ptr<ContactInterface> contact_; ///< of this mesh, paired at the state that is judged
+    BlockVector                       unknowns_;
+    LinearSystem                      system_; ///< that contact terms are written to
+    std::vector<double>               face_;   ///< of each pair: mean face of the side with the larger ones [length]
+    double                            length_ = 0.; ///< of the step, that gaps and slips are measured against
+  };
+} // namespace Nodus
+
+#endif

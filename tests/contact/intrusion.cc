@@ -1,0 +1,120 @@
+// How far nodes are behind the other surface of their pair, and which have gone through it, for a block over a wider
+// one whose nodes are put where nothing holds them. Expected numbers follow from the geometry: faces of 0.5 above, of
+// 0.5 below, a block of thickness 1.
+
+#include "../contact_fixture.h"
+
+#include "contact/intrusion.h"
+#include "contact/triangles.h"
+
+#include <deal.II/base/mpi.h>
+
+using namespace Cases;
+
+namespace
+{
+  constexpr double tolerated = 0.1;
+
+  std::string text(const Intrusion::Node &node)
+  {
+    std::ostringstream s;
+    s << (node.side == slave_side ? "slave" : "master") << " node (" << node.X << ')';
+    return s.str();
+  }
+
+  /// Moves the upper body, which has nodes above z = 1.
+  std::vector<Point> moved(const ContactFixture &f, const Vector3 &by, const Vector3 &all = Vector3(), double turn = 0.)
+  {
+    std::vector<Point> x;
+    for (const SurfaceNode &node : f.surfaces->nodes())
+    {
+      Point        p     = node.X;
+      const bool   upper = p[2] > 1.01;
+      const double c = std::cos(turn), s = std::sin(turn);
+      if (upper)
+        p = Point(1. + c * (p[0] - 1.) - s * (p[2] - 1.05), p[1], 1.05 + s * (p[0] - 1.) + c * (p[2] - 1.05));
+      x.push_back(p + (upper ? by : Vector3()) + all);
+    }
+    return x;
+  }
+
+  void show(const std::string &what, ContactFixture &f, const std::vector<Point> &before, const std::vector<Point> &now)
+  {
+    const Intrusion found = find_intrusions(*f.surfaces, before, now, 0., 1., {tolerated})[0];
+    if (!root())
+      return;
+    std::cout << what << ": depth " << (found.depth < 1e-12 ? 0. : found.depth);
+    if (found.depth > 1e-12)
+      std::cout << " at " << text(found.deepest);
+    std::cout << ", passed " << (found.passed > 0 ? "yes" : "no") << std::endl;
+  }
+
+  void test(const unsigned int degree)
+  {
+    ContactFixture f({box("lower", "4,4,2", {0, 0, 0}, {2, 2, 1}, 1., 0.),
+                      box("upper", "2,2,2", {0.5, 0.5, 1.05}, {1.5, 1.5, 2.05}, 1., 0.)},
+                     {pair(region(2, {z_minus}), region(1, {z_plus}))},
+                     degree);
+    if (root())
+      std::cout << "degree " << degree << std::endl;
+    const auto at_start = moved(f, {});
+    show("at rest over a gap of 0.05", f, at_start, at_start);
+    show("pressed 0.06 inside", f, at_start, moved(f, Vector3({0., 0., -0.11})));
+    show("pressed 0.3 inside", f, at_start, moved(f, Vector3({0., 0., -0.35})));
+    show("as deep before", f, moved(f, Vector3({0., 0., -0.35})), moved(f, Vector3({0., 0., -0.35})));
+    show("both bodies carried 40 away", f, at_start, moved(f, {}, Vector3({0., 40., 0.})));
+    show("... and pressed 0.3 inside", f, at_start, moved(f, Vector3({0., 0., -0.35}), Vector3({0., 40., 0.})));
+    show("thrown through and beyond", f, at_start, moved(f, Vector3({0., 0., -30.})));
+    show("thrown through and out sideways", f, at_start, moved(f, Vector3({4., 0., -4.})));
+    show("past the rim, and down beside the block",
+         f,
+         moved(f, Vector3({1.6, 0., 0.})),
+         moved(f, Vector3({1.8, 0., -0.6})));
+    show("hanging over the rim, bent down",
+         f,
+         moved(f, Vector3({1.3, 0., -0.05})),
+         moved(f, Vector3({1.3, 0., -0.05}), {}, -0.3));
+    show("touching, slid along", f, moved(f, Vector3({0., 0., -0.05})), moved(f, Vector3({0.4, 0.2, -0.05})));
+    show("touching, pressed 2 inside", f, moved(f, Vector3({0., 0., -0.05})), moved(f, Vector3({0., 0., -2.05})));
+  }
+
+  void test_crossings()
+  {
+    const auto show = [](const std::string &what, const Way &p, const Way &a, const Way &b, const Way &c)
+    {
+      if (!root())
+        return;
+      std::cout << what << ':';
+      for (const Crossing &crossing : find_crossings(p, a, b, c))
+        std::cout << " at " << crossing.time << (crossing.inward ? " inward" : " outward") << " with "
+                  << crossing.speed;
+      std::cout << std::endl;
+    };
+    const Way a{{Point(0, 0, 0), Point(0, 0, 0)}}, b{{Point(1, 0, 0), Point(1, 0, 0)}},
+        c{{Point(0, 1, 0), Point(0, 1, 0)}};
+    show("straight through", {{Point(0.2, 0.2, 1), Point(0.2, 0.2, -3)}}, a, b, c);
+    show("back", {{Point(0.2, 0.2, -3), Point(0.2, 0.2, 1)}}, a, b, c);
+    show("beside", {{Point(0.7, 0.7, 1), Point(0.7, 0.7, -3)}}, a, b, c);
+    show("through an edge", {{Point(0.5, 0., 1), Point(0.5, 0., -1)}}, a, b, c);
+    // the triangle turns over while the point rests: its plane comes by twice
+    const Way b_up{{Point(1, 0, -1), Point(1, 0, 1)}}, c_up{{Point(0, 1, -1), Point(0, 1, 1)}};
+    show("the triangle moves",
+         {{Point(0.2, 0.2, 0), Point(0.2, 0.2, 0)}},
+         {{Point(0, 0, -1), Point(0, 0, 1)}},
+         b_up,
+         c_up);
+    show("both move together",
+         {{Point(0.2, 0.2, 0.1), Point(0.2, 0.2, 2.1)}},
+         {{Point(0, 0, 0), Point(0, 0, 2)}},
+         {{Point(1, 0, 0), Point(1, 0, 2)}},
+         {{Point(0, 1, 0), Point(0, 1, 2)}});
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  test_crossings();
+  test(1);
+  test(2);
+}
