@@ -85,7 +85,8 @@ namespace Nodus
             deep = deep || (crossing.time - entry->time) * 0.5 * (entry->speed + crossing.speed) > tolerated;
           inside = crossing.inward;
         }
-        return deep || (inside && distance > tolerated);
+        // neither has a node that dips a little below the surface and leaves it over the rim
+        return deep || (inside && distance > tolerated && (1. - entry->time) * entry->speed > tolerated);
       }
       template <typename Archive>
       void serialize(Archive &archive, const unsigned int)

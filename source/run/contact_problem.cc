@@ -68,19 +68,19 @@ namespace Nodus
       if (!restart)
         adaptation.refine_near_contact();
       equilibrium.begin_on_mesh();
-      if (!restart)
-        model.set_conditions(path.at_hand().end); // what is wrong at once is refused before there is any file
+      if (!restart) // what is wrong at once is refused before there is any file
+      {
+        model.set_conditions(path.at_hand().end);
+        const auto pairing_timer = journal.profile.time(Phase::pairing);
+        model.begin_contact(states.now);
+        states.committed = states.now;
+      }
       results.begin_on_mesh();
       journal.tables = std::make_unique<Tables>(parameters.output.results_folder, model.communicator);
       journal.diagnosis.begin_run();
     }
     if (restart)
       return checkpointing.read(path);
-    {
-      const auto timer = journal.profile.time(Phase::pairing);
-      model.begin_contact(states.now);
-      states.committed = states.now;
-    }
     results.write_initial_state();
   }
 

@@ -1,6 +1,6 @@
 // States that are not what they should be are refused. A block is pressed onto another one and dragged; the state that
 // the loops find at the end of the third increment is changed in one place each time, and judged. Printed are the
-// measure that it violates most, and by how much of its tolerance; the state as it was holds.
+// measures that it violates; the state as it was holds.
 
 #include "sliding_block.h"
 
@@ -81,17 +81,14 @@ namespace
   {
     if (!root())
       return;
-    std::cout << what << ": ";
-    if (verdict.holds())
-      std::cout << "holds" << std::endl;
-    else
-    {
-      std::cout << measure_names[static_cast<unsigned int>(verdict.worst())] << std::endl;
-      if (std::getenv("NODUS_TEST_LOG") != nullptr)
-        for (unsigned int m = 0; m < n_measures; ++m)
-          if (!verdict[static_cast<Measure>(m)].holds())
-            std::cout << "    " << verdict.text(static_cast<Measure>(m)) << std::endl;
-    }
+    std::cout << what << ":";
+    for (unsigned int m = 0; m < n_measures; ++m)
+      if (!verdict[static_cast<Measure>(m)].holds())
+        std::cout << ' ' << measure_names[m] << ',';
+    std::cout << (verdict.holds() ? " holds" : " violated") << std::endl;
+    for (unsigned int m = 0; m < n_measures && std::getenv("NODUS_TEST_LOG") != nullptr; ++m)
+      if (!verdict[static_cast<Measure>(m)].holds())
+        std::cout << "    " << verdict.text(static_cast<Measure>(m)) << std::endl;
   }
 } // namespace
 
@@ -119,10 +116,9 @@ int main(int argc, char **argv)
     State                 &now      = run.states.now;
     const ContactSurfaces &surfaces = run.model.contact->surfaces();
     const unsigned int     k = slave_near(run, {0.8, 0.5, 0.5}), corner = slave_near(run, {0.3, 0.1, 0.5});
-    const bool             here = k != dealii::numbers::invalid_unsigned_int,
-               corner_here      = corner != dealii::numbers::invalid_unsigned_int;
-    const double nan            = std::numeric_limits<double>::quiet_NaN();
-    const auto   site           = [&] // a site with a status at the node
+    const bool             here = k != dealii::numbers::invalid_unsigned_int;
+    const double           nan  = std::numeric_limits<double>::quiet_NaN();
+    const auto             site = [&] // a site with a status at the node
     {
       for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
         if (surfaces.is_owned(s) && surfaces.has_status(s) && now.contact.statuses.contact[s])
@@ -213,6 +209,5 @@ int main(int argc, char **argv)
            });
     tamper("the state before", [&] { now = run.states.committed; });
     tamper("a corner of the interface thrown through the lower block", [&] { displace(corner, 2, -1.); });
-    (void)corner_here;
   }
 }
