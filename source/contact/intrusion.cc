@@ -1,12 +1,10 @@
 #include "contact/intrusion.h"
-#include "contact/triangles.h"
-#include "parallel/sparse_exchange.h"
+#include "contact/other_side.h"
 
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <utility>
 
 namespace Nodus
@@ -15,192 +13,9 @@ namespace Nodus
   {
     using Box = dealii::BoundingBox<dim>;
 
-    /// A surface that looks the way of the node's own one (cosine above this) is the far side of a body.
-    constexpr double far_side_cosine = 0.3;
     /// Nodes that touch begin their way this part of the tolerated depth outside, lest they begin behind.
     constexpr double lift = 0.1;
 
-    bool meet(const Box &a, const Box &b)
-    {
-      for (unsigned int c = 0; c < dim; ++c)
-        if (a.lower_bound(c) > b.upper_bound(c) || b.lower_bound(c) > a.upper_bound(c))
-          return false;
-      return true;
-    }
-
-    /// A node that asks where it is.
-    struct Question
-    {
-      Point  before, now;
-      double reach; ///< farther faces do not count [length]
-
-      Box box() const
-      {
-        Box box({now, now});
-        box.extend(reach);
-        box.merge_with(Box({before, before}));
-        return box;
-      }
-      template <typename Archive>
-      void serialize(Archive &archive, const unsigned int)
-      {
-        archive &before &now &reach;
-      }
-    };
-    struct Answer
-    {
-      double                distance;
-      bool                  over, behind;
-      Vector3               normal;
-      std::vector<Crossing> crossings;
-
-      /// That of another rank about the same node.
-      void merge(const Answer &other)
-      {
-        crossings.insert(crossings.end(), other.crossings.begin(), other.crossings.end());
-        if (other.distance >= distance)
-          return;
-        distance = other.distance;
-        over     = other.over;
-        behind   = other.behind;
-        normal   = other.normal;
-      }
-      /// How deep a node whose own surface has the normal @p outward is.
-      double depth(const Vector3 &outward) const
-      {
-        return behind && over && normal * outward < far_side_cosine ? distance : 0.;
-      }
-      /// Whether the node has gone through the surface deeper than @p tolerated.
-      bool passed(const double tolerated)
-      {
-        std::sort(
-            crossings.begin(), crossings.end(), [](const Crossing &a, const Crossing &b) { return a.time < b.time; });
-        bool            inside = false, deep = false;
-        const Crossing *entry = nullptr;
-        for (const Crossing &crossing : crossings)
-        {
-          if (crossing.inward && !inside)
-            entry = &crossing;
-          if (!crossing.inward && inside) // a curved way beside a curved surface is straight here, and grazes it
-            deep = deep || (crossing.time - entry->time) * 0.5 * (entry->speed + crossing.speed) > tolerated;
-          inside = crossing.inward;
-        }
-        // neither has a node that dips a little below the surface and leaves it over the rim
-        return deep || (inside && distance > tolerated && (1. - entry->time) * entry->speed > tolerated);
-      }
-      template <typename Archive>
-      void serialize(Archive &archive, const unsigned int)
-      {
-        archive &distance &over &behind &normal &crossings;
-      }
-    };
-
-    /// The faces of all ranks on one side of a pair, which answer questions about nodes of the other side.
-    class OtherSide
-    {
-    public:
-      /// @p own: the faces of this rank at the positions @p now. Collective.
-      OtherSide(const Triangles          &own,
-                const std::vector<Point> &before,
-                const std::vector<Point> &now,
-                const MPI_Comm            communicator)
-          : own_(own)
-          , before_(before)
-          , communicator_(communicator)
-          , rank_(dealii::Utilities::MPI::this_mpi_process(communicator))
-      {
-        // how the surface moves as a whole, which is no way through anything
-        std::vector<double> sum(dim + 1, 0.);
-        for (const unsigned int n : own.nodes())
-        {
-          sum[dim] += 1.;
-          for (unsigned int c = 0; c < dim; ++c)
-            sum[c] += now[n][c] - before[n][c];
-        }
-        dealii::Utilities::MPI::sum(sum, communicator, sum);
-        for (unsigned int c = 0; c < dim; ++c)
-          motion_[c] = sum[c] / sum[dim];
-        Box all = own.box();
-        for (const unsigned int n : own.nodes())
-        {
-          before_[n] += motion_;
-          moves_ = std::max(moves_, (now[n] - before_[n]).norm());
-          all.merge_with(Box({before_[n], before_[n]}));
-        }
-        moves_ = dealii::Utilities::MPI::max(moves_, communicator);
-        std::array<double, 2 * dim> corners{};
-        for (unsigned int c = 0; c < dim; ++c)
-        {
-          corners[c]       = all.lower_bound(c);
-          corners[dim + c] = all.upper_bound(c);
-        }
-        of_rank_ =
-            dealii::Utilities::MPI::all_gather(communicator, std::make_pair(own.nodes().empty() ? 0u : 1u, corners));
-      }
-
-      /// What to ask about a node. What was not deeper than @p depth can be no deeper now than the way of both
-      /// surfaces.
-      Question question(const Point &before, const Point &now, const double depth) const
-      {
-        Question question{before + motion_, now, depth};
-        question.reach += moves_ + (now - question.before).norm();
-        return question;
-      }
-
-      /// What all ranks know of each node. Collective.
-      std::vector<Answer> answers(const std::vector<Question> &questions) const
-      {
-        std::vector<Answer>                               merged = answer(questions);
-        std::map<unsigned int, std::vector<Question>>     outgoing;
-        std::map<unsigned int, std::vector<unsigned int>> asked;
-        for (unsigned int r = 0; r < of_rank_.size(); ++r)
-        {
-          const auto &[any, c] = of_rank_[r];
-          if (r == rank_ || any == 0)
-            continue;
-          const Box box({Point(c[0], c[1], c[2]), Point(c[3], c[4], c[5])});
-          for (unsigned int i = 0; i < questions.size(); ++i)
-            if (meet(questions[i].box(), box))
-            {
-              outgoing[r].push_back(questions[i]);
-              asked[r].push_back(i);
-            }
-        }
-        if (of_rank_.size() == 1)
-          return merged;
-        std::map<unsigned int, std::vector<Answer>> back;
-        for (const auto &[other, list] : sparse_exchange(communicator_, outgoing))
-          back[other] = answer(list);
-        for (const auto &[other, list] : sparse_exchange(communicator_, back))
-          for (unsigned int i = 0; i < list.size(); ++i)
-            merged[asked[other][i]].merge(list[i]);
-        return merged;
-      }
-
-    private:
-      std::vector<Answer> answer(const std::vector<Question> &questions) const
-      {
-        std::vector<Way> ways;
-        for (const Question &question : questions)
-          ways.push_back({{question.before, question.now}});
-        std::vector<std::vector<Crossing>> crossings = own_.crossings(ways, before_);
-        std::vector<Answer>                result;
-        for (unsigned int i = 0; i < questions.size(); ++i)
-        {
-          const Height height = own_.height(questions[i].now, questions[i].reach);
-          result.push_back({height.distance, height.over, height.behind, height.normal, std::move(crossings[i])});
-        }
-        return result;
-      }
-
-      const Triangles                                                  &own_;
-      std::vector<Point>                                                before_; ///< moved as the surface moves
-      MPI_Comm                                                          communicator_;
-      unsigned int                                                      rank_;
-      Vector3                                                           motion_;     ///< of the surface as a whole
-      double                                                            moves_ = 0.; ///< largest besides that
-      std::vector<std::pair<unsigned int, std::array<double, 2 * dim>>> of_rank_;    ///< whether it has faces, box
-    };
     /// What is found of one pair.
     class Search
     {
@@ -222,12 +37,12 @@ namespace Nodus
       /// Nodes of @p side, which has the faces @p own, against the faces @p other. Collective.
       void find(const SurfaceSide side, const std::vector<SurfaceFace> &own, const std::vector<SurfaceFace> &other)
       {
-        const Triangles       mine = triangles(own, now_), theirs = triangles(other, now_);
-        const OtherSide       faces(theirs, before_, now_, communicator_);
-        std::vector<Question> questions;
+        const Triangles           mine = triangles(own, now_), theirs = triangles(other, now_);
+        const OtherSide           faces(theirs, before_, now_, communicator_);
+        std::vector<NodeQuestion> questions;
         for (const unsigned int n : mine.nodes())
           questions.push_back(faces.question(before_[n] - lift * tolerated_ * mine.normal(n), now_[n], tolerated_));
-        std::vector<Answer>       answers = faces.answers(questions);
+        std::vector<NodeAnswer>   answers = faces.answers(questions);
         std::vector<unsigned int> deep;
         for (unsigned int i = 0; i < answers.size(); ++i)
         {
@@ -252,7 +67,7 @@ namespace Nodus
         const OtherSide           faces(theirs, now_, now_, communicator_);
         const auto                ends  = around.get_boundary_points();
         const double              reach = ends.first.distance(ends.second);
-        std::vector<Question>     questions;
+        std::vector<NodeQuestion> questions;
         std::vector<unsigned int> nodes;
         for (const unsigned int n : mine.nodes())
           if (around.point_inside(now_[n]))
@@ -260,8 +75,8 @@ namespace Nodus
             questions.push_back({now_[n], now_[n], reach});
             nodes.push_back(n);
           }
-        std::vector<DeepNode>     found;
-        const std::vector<Answer> answers = faces.answers(questions);
+        std::vector<DeepNode>         found;
+        const std::vector<NodeAnswer> answers = faces.answers(questions);
         for (unsigned int i = 0; i < nodes.size(); ++i)
           if (const double depth = answers[i].depth(mine.normal(nodes[i])); depth > tolerated_)
             found.push_back(
@@ -274,13 +89,13 @@ namespace Nodus
                                  const std::vector<SurfaceFace> &other,
                                  const double                    landing) const
       {
-        const Triangles       mine = triangles(own, now_), theirs = triangles(other, now_);
-        const OtherSide       faces(theirs, before_, now_, communicator_);
-        std::vector<Question> questions;
+        const Triangles           mine = triangles(own, now_), theirs = triangles(other, now_);
+        const OtherSide           faces(theirs, before_, now_, communicator_);
+        std::vector<NodeQuestion> questions;
         for (const unsigned int n : mine.nodes())
           questions.push_back(faces.question(before_[n] - lift * landing * mine.normal(n), now_[n], tolerated_));
         double part = 1.;
-        for (Answer &answer : faces.answers(questions))
+        for (NodeAnswer &answer : faces.answers(questions))
           if (answer.passed(tolerated_))
             for (const Crossing &crossing : answer.crossings) // in ascending order by now
               if (crossing.inward)
@@ -349,15 +164,15 @@ namespace Nodus
                    const Triangles                 &mine,
                    const Triangles                 &theirs,
                    const std::vector<unsigned int> &nodes,
-                   const std::vector<Question>     &questions,
-                   const std::vector<Answer>       &answers,
+                   const std::vector<NodeQuestion> &questions,
+                   const std::vector<NodeAnswer>   &answers,
                    const std::vector<unsigned int> &deep)
       {
-        const OtherSide       faces(theirs, before_, before_, communicator_);
-        std::vector<Question> earlier;
+        const OtherSide           faces(theirs, before_, before_, communicator_);
+        std::vector<NodeQuestion> earlier;
         for (const unsigned int i : deep)
           earlier.push_back({before_[nodes[i]], before_[nodes[i]], questions[i].reach});
-        const std::vector<Answer> were = faces.answers(earlier);
+        const std::vector<NodeAnswer> were = faces.answers(earlier);
         for (unsigned int j = 0; j < deep.size(); ++j)
         {
           const unsigned int n = nodes[deep[j]];
@@ -369,7 +184,7 @@ namespace Nodus
       double depth_in(const RigidSurface &master, const Point &x, const Vector3 &outward) const
       {
         const RigidPoint point = master.closest(x);
-        return point.found && point.normal * outward < far_side_cosine ? std::max(-point.height, 0.) : 0.;
+        return point.found && point.normal * outward < NodeAnswer::far_side_cosine ? std::max(-point.height, 0.) : 0.;
       }
 
       void note(const unsigned int node, const SurfaceSide side, const double depth, const bool passed)

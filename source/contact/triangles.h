@@ -36,7 +36,7 @@ namespace Nodus
       archive &time &inward &speed;
     }
   };
-  /// In ascending order of their times, three at most.
+  /// In ascending order of their times, three at most (eq. V1).
   std::vector<Crossing> find_crossings(const Way &p, const Way &a, const Way &b, const Way &c);
 
   /// Faces of a surface as triangles between their nodes, two for each face or for each quarter of one of degree 2:
