@@ -36,6 +36,11 @@ namespace Nodus
   {
   }
 
+  double IncrementLoops::tolerated_rest(const double tolerance)
+  {
+    return std::max(tolerance, std::min(100. * tolerance, 1e-3));
+  }
+
   void IncrementLoops::solve()
   {
     const MergedLoops &merged  = equilibrium_.merged();
@@ -209,6 +214,13 @@ namespace Nodus
     journal_.console.remark(text.str());
     note_pass(loop, value, worst);
     const double before = loop.value();
+    const bool   last   = loop.counter() + 1 >= model_.parameters.geometry_loop.maximum_passes;
+    if (last && value > loop.tolerance() && value <= tolerated_rest(loop.tolerance()))
+    {
+      journal_.console.remark("warning: the geometry loop ends with forces and contact laws off by " +
+                              dealii::Utilities::to_string(value));
+      return true;
+    }
     if (loop.finished(value, worst))
       return true;
 

@@ -14,6 +14,10 @@ namespace Nodus
   class IncrementLoops
   {
   public:
+    /// What a geometry loop with a @p tolerance may leave out of balance at its last pass: where points of a fixed rule
+    /// come and go with the overlap of the surfaces, it does not settle any further.
+    static double tolerated_rest(double tolerance);
+
     /// All outlive it. @p heed_signals is called in every Newton iteration, and may throw.
     IncrementLoops(
         Model &model, Journal &journal, States &states, Equilibrium &equilibrium, std::function<void()> heed_signals);

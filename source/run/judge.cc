@@ -2,6 +2,7 @@
 #include "contact/free_motions.h"
 #include "mesh/sides.h"
 #include "parallel/largest.h"
+#include "run/increment_loops.h"
 #include "run/state_visitors.h"
 
 #include <deal.II/base/mpi.h>
@@ -16,6 +17,8 @@ namespace Nodus
   {
     /// Forces, laws and thresholds may violate their equations by so many times what their loop asks for.
     constexpr double allowance = 10.;
+    /// ... and by this: which sites at the rim of a master have a partner depends on which had one before.
+    constexpr double ambiguity = 1e-4;
     /// The resultant of a body and that of a pair, relative; the moment of a pair in forces times mean faces.
     constexpr double body_tolerance = 1e-6, pair_force_tolerance = 1e-9, pair_moment_tolerance = 0.1;
     /// Of contradicted statuses, of the largest pressure or of the cone.
@@ -124,6 +127,7 @@ namespace Nodus
                                                   model_.rigid_bodies,
                                                   interface_state_);
     system_.layout = &contact_->surfaces().layout();
+    system_.layout->reinit(unknowns_); // a vector keeps its partition where only the sizes are those of another one
     for (unsigned int p = 0; p < model_.parameters.contact_pairs.size(); ++p)
       face_.push_back(contact_->surfaces().larger_face(p));
   }
@@ -156,11 +160,13 @@ namespace Nodus
     length_ = std::max(largest_entry(moved), model_.length_scale);
   }
 
-  /// Of forces and laws: a geometry loop leaves what its tolerance is.
+  /// Of forces and laws: a geometry loop may leave more than its tolerance.
   double Judge::tolerance(const double of_newton) const
   {
     const bool loop = !equilibrium_.merged().geometry; // with once the geometry does not change
-    return allowance * std::max(of_newton, loop ? model_.parameters.geometry_loop.tolerance : 0.);
+    return std::max({allowance * of_newton,
+                     ambiguity,
+                     loop ? 2. * IncrementLoops::tolerated_rest(model_.parameters.geometry_loop.tolerance) : 0.});
   }
 
   void Judge::measure_numbers(Verdict &verdict) const

@@ -26,7 +26,8 @@ int main(int argc, char **argv)
     p.contact_pairs                    = {upper_is_slave ? pair(upper, lower) : pair(lower, upper)};
     p.contact_pairs[0].surface_measure = ContactPairParameters::SurfaceMeasure::reference;
     p.output.results_folder            = "v1_results";
-    use_loops(p); // the references keep the geometry of the start
+    use_loops(p); // the references renew the geometry once
+    p.geometry_loop.tolerance = 0.01;
 
     ContactProblem problem(p, world(), log());
     problem.run();

@@ -57,7 +57,7 @@ int main(int argc, char **argv)
 
   auto points                      = p;
   points.contact_pairs[0].scheme   = ContactPairParameters::Scheme::integration_point;
-  points.newton.maximum_iterations = 5;
+  points.newton.maximum_iterations = 6;
   compare("integration points", points);
 
   auto averaged                      = p;

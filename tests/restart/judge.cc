@@ -178,7 +178,7 @@ int main(int argc, char **argv)
     tamper("a node of the interface pressed in", [&] { displace(k, 2, -0.001); });
     tamper("a node of the interface lifted", [&] { displace(k, 2, 0.001); });
     tamper("a node of the interface moved along it", [&] { displace(k, 0, 0.001); });
-    tamper("a node moved by a millionth", [&] { displace(k, 2, 1e-6); });
+    tamper("a node moved by a hundred-thousandth", [&] { displace(k, 2, 1e-5); });
     tamper("the upper block lifted off", [&] { displace_body(1, 2, 0.1); });
     tamper("the upper block let down through the lower one", [&] { displace_body(1, 2, -2.); });
     tamper("the upper block pressed in", [&] { displace_body(1, 2, -0.2); });
