@@ -250,7 +250,7 @@ namespace Nodus
   /// shortened: they end a little behind it, and contact acts.
   void Equilibrium::limit_step(const BlockVector &correction)
   {
-    step_limit_ = 1.;
+    step_limit_                     = 1.;
     const ContactSurfaces &surfaces = model_.contact->surfaces();
     if (surfaces.n_pairs() == 0 || !model_.parameters.strategy.uses(Remedy::limited_step))
       return;
@@ -267,8 +267,8 @@ namespace Nodus
     if (part == 1.)
       return;
     journal_.count(Remedy::limited_step);
-    journal_.console.remark("the correction would take bodies through each other unseen: " + dealii::Utilities::to_string(part) +
-                            " of it is taken");
+    journal_.console.remark("the correction would take bodies through each other unseen: " +
+                            dealii::Utilities::to_string(part) + " of it is taken");
     step_limit_ = part;
   }
 
@@ -278,7 +278,7 @@ namespace Nodus
       journal_.count(Remedy::shorter_step);
     states_.now.unknowns = iterate_;
     states_.now.rigid    = rigid_iterate_;
-    const double part = factor * step_limit_;
+    const double part    = factor * step_limit_;
     states_.now.unknowns.add(part, correction);
     model_.rigid_bodies.advance(part, driven_.correction());
     model_.rigid_bodies.move(states_.now.unknowns.block(0));

@@ -143,7 +143,7 @@ namespace Nodus
     DoFIndex                                 null_pivot_        = dealii::numbers::invalid_dof_index;
     bool                                     singular_          = false;
     bool                                     motions_unknown_   = false; ///< an interval begins
-    double                                   step_limit_        = 1.; ///< part of the correction that may be taken
+    double                                   step_limit_        = 1.;    ///< part of the correction that may be taken
     double                                   prescribed_before_ = 0.; ///< still to be met at the last iterate, relative
   };
 } // namespace Nodus
