@@ -1,5 +1,6 @@
 #include "contact/contact_geometry.h"
 #include "contact/master_request.h"
+#include "contact/triangles.h"
 
 #include <deal.II/numerics/rtree.h>
 
@@ -14,17 +15,6 @@ namespace Nodus
   {
     /// Master faces looking along the slave's outward normal (cosine above this) are the far side of a body.
     constexpr double far_side_cosine = 0.5;
-
-    double squared_distance(const dealii::BoundingBox<dim> &box, const Point &p)
-    {
-      double d2 = 0;
-      for (unsigned int c = 0; c < dim; ++c)
-      {
-        const double d = std::max({box.lower_bound(c) - p[c], 0., p[c] - box.upper_bound(c)});
-        d2 += d * d;
-      }
-      return d2;
-    }
   } // namespace
 
   struct MasterSearch::Tree

@@ -34,10 +34,21 @@ namespace Nodus
       {
       }
 
-      /// Nodes of @p side, which has the faces @p own, against the faces @p other. Collective.
-      void find(const SurfaceSide side, const std::vector<SurfaceFace> &own, const std::vector<SurfaceFace> &other)
+      /// Both sides of a pair against each other. Collective.
+      void find(const std::vector<SurfaceFace> &slaves, const std::vector<SurfaceFace> &masters)
       {
-        const Triangles           mine = triangles(own, now_), theirs = triangles(other, now_);
+        const Triangles slave = triangles(slaves, now_), master = triangles(masters, now_);
+        find(slave_side, slave, master, slaves, masters);
+        find(master_side, master, slave, masters, slaves);
+      }
+
+      /// Nodes of @p side, which has the faces @p own, against the faces @p other. Collective.
+      void find(const SurfaceSide               side,
+                const Triangles                &mine,
+                const Triangles                &theirs,
+                const std::vector<SurfaceFace> &own,
+                const std::vector<SurfaceFace> &other)
+      {
         const OtherSide           faces(theirs, before_, now_, communicator_);
         std::vector<NodeQuestion> questions;
         for (const unsigned int n : mine.nodes())
@@ -245,10 +256,7 @@ namespace Nodus
       if (RigidSurface *const master = surfaces.rigid_master(p))
         search.find(surfaces.slave_faces(p), *master, begin, end);
       else
-      {
-        search.find(slave_side, surfaces.slave_faces(p), surfaces.master_faces(p));
-        search.find(master_side, surfaces.master_faces(p), surfaces.slave_faces(p));
-      }
+        search.find(surfaces.slave_faces(p), surfaces.master_faces(p));
       result.push_back(search.result());
     }
     return result;

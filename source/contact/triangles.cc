@@ -27,17 +27,6 @@ namespace Nodus
       return Box(std::vector<Point>(points));
     }
 
-    double squared_distance(const Box &box, const Point &p)
-    {
-      double d2 = 0.;
-      for (unsigned int c = 0; c < dim; ++c)
-      {
-        const double d = std::max({box.lower_bound(c) - p[c], 0., p[c] - box.upper_bound(c)});
-        d2 += d * d;
-      }
-      return d2;
-    }
-
     /// Barycentric coordinates of the point of a triangle that is closest to @p p (Ericson 2005, section 5.1.5).
     std::array<double, 3> closest_point(const Point &p, const Point &a, const Point &b, const Point &c)
     {
@@ -108,6 +97,17 @@ namespace Nodus
       return changes;
     }
   } // namespace
+
+  double squared_distance(const Box &box, const Point &p)
+  {
+    double d2 = 0.;
+    for (unsigned int c = 0; c < dim; ++c)
+    {
+      const double d = std::max({box.lower_bound(c) - p[c], 0., p[c] - box.upper_bound(c)});
+      d2 += d * d;
+    }
+    return d2;
+  }
 
   std::vector<Crossing> find_crossings(const Way &p, const Way &a, const Way &b, const Way &c)
   {

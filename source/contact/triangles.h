@@ -21,6 +21,9 @@ namespace Nodus
     Vector3 normal;                                             ///< outward there, unit
   };
 
+  /// Of a point from a box, 0 inside.
+  double squared_distance(const dealii::BoundingBox<dim> &box, const Point &p);
+
   using Way = std::array<Point, 2>; ///< from, to
 
   /// A point that moves evenly goes through a triangle whose corners do likewise.

@@ -1,5 +1,4 @@
 #include "run/judge.h"
-#include "contact/free_motions.h"
 #include "mesh/sides.h"
 #include "parallel/largest.h"
 #include "run/increment_loops.h"
@@ -126,6 +125,7 @@ namespace Nodus
                                                   *model_.mapping,
                                                   model_.rigid_bodies,
                                                   interface_state_);
+    nodes_         = std::make_unique<OwnedNodes>(model_.dof_handler, *model_.mapping);
     system_.layout = &contact_->surfaces().layout();
     system_.layout->reinit(unknowns_); // a vector keeps its partition where only the sizes are those of another one
     for (unsigned int p = 0; p < model_.parameters.contact_pairs.size(); ++p)
@@ -255,8 +255,8 @@ namespace Nodus
   /// The resultants of what is @p missing at the free nodes of each body, relative to the forces @p acting on it.
   Verdict::Finding Judge::measure_bodies(const Vector &missing, const Vector &acting, const double scale) const
   {
-    constexpr unsigned int n = 7; // force, moment, sum of the lengths of what acts
-    const OwnedNodes       nodes(model_.dof_handler, *model_.mapping);
+    constexpr unsigned int n     = 7; // force, moment, sum of the lengths of what acts
+    const OwnedNodes      &nodes = *nodes_;
     std::vector<double>    sums(n * model_.bodies.size(), 0.);
     std::vector<Point>     middle;
     for (unsigned int b = 0; b < model_.bodies.size(); ++b)

@@ -1,6 +1,7 @@
 #ifndef nodus_run_judge_h
 #define nodus_run_judge_h
 
+#include "contact/free_motions.h"
 #include "contact/intrusion.h"
 #include "output/verdict.h"
 #include "run/equilibrium.h"
@@ -40,6 +41,7 @@ namespace Nodus
     const States                     &states_;
     const Equilibrium                &equilibrium_;
     InterfaceState                    interface_state_;
+    std::unique_ptr<const OwnedNodes> nodes_;   ///< of this mesh
     std::unique_ptr<ContactInterface> contact_; ///< of this mesh, paired at the state that is judged
     BlockVector                       unknowns_;
     LinearSystem                      system_; ///< that contact terms are written to

@@ -163,6 +163,7 @@ namespace Nodus
     try
     {
       parts_.strategy.solve_increment();
+      judge();
     }
     catch (const SolverFailure &failure)
     {
