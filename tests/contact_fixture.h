@@ -27,13 +27,11 @@ struct ContactFixture
       , dof_handler(bodies.triangulation())
   {
     dof_handler.distribute_dofs(fe);
-    surfaces  = std::make_unique<Nodus::ContactSurfaces>(pairs, bodies, dof_handler, mapping);
-    status    = std::make_unique<Nodus::Status>(pairs,
-                                             *surfaces,
-                                             std::vector<double>(pairs.size(), normal_augmentation),
-                                             std::vector<double>(pairs.size(), 1.),
-                                             strategy,
-                                             statuses);
+    surfaces = std::make_unique<Nodus::ContactSurfaces>(pairs, bodies, dof_handler, mapping);
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+      pairs[p].normal_augmentation_factor = normal_augmentation * surfaces->face_size(p);
+    status =
+        std::make_unique<Nodus::Status>(pairs, *surfaces, std::vector<double>(pairs.size(), 1.), strategy, statuses);
     assembler = std::make_unique<Nodus::ContactAssembler>(*surfaces, pairing, jump, weights, *status);
 
     const std::vector<Nodus::Vector3> zero(surfaces->nodes().size());

@@ -1,10 +1,6 @@
 #ifndef nodus_base_complete_file_h
 #define nodus_base_complete_file_h
 
-#include <nodus/base/types.h>
-
-#include <deal.II/base/mpi.h>
-
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -63,38 +59,6 @@ namespace Nodus
     std::ofstream stream_;
     bool          finished_ = false;
   };
-
-  /// @throws InputError on every rank when any rank's @p problem is not empty. Collective.
-  inline void throw_on_every_rank(const std::string &problem, MPI_Comm communicator)
-  {
-    for (const std::string &text : dealii::Utilities::MPI::all_gather(communicator, problem))
-      if (!text.empty())
-        throw InputError(text);
-  }
-
-  /// Creates @p folder, tries to write in it and removes what a run that was killed left incomplete, from rank 0.
-  /// Collective. @throws InputError on every rank.
-  inline void make_results_folder(const std::string &folder, MPI_Comm communicator)
-  {
-    std::string problem;
-    if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
-    {
-      std::error_code error;
-      std::filesystem::create_directories(folder, error);
-      const std::filesystem::path probe = std::filesystem::path(folder) / ".writable";
-      if (!std::filesystem::is_directory(folder))
-        problem = "cannot create the results folder " + folder + ": " + error.message();
-      else if (!std::ofstream(probe))
-        problem = "cannot write in the results folder " + folder;
-      std::filesystem::remove(probe, error);
-      for (const auto &entry : std::filesystem::directory_iterator(folder, error))
-        if (entry.path().extension() == ".incomplete")
-          std::filesystem::remove(entry.path(), error);
-      if (!problem.empty())
-        problem += "; choose another with Output/Results folder";
-    }
-    throw_on_every_rank(problem, communicator);
-  }
 } // namespace Nodus
 
 #endif

@@ -1,13 +1,18 @@
 #include "bulk/loads.h"
 #include "bulk/face_table.h"
+#include "parallel/owned_values.h"
+#include "parallel/ownership.h"
 #include "parallel/throw_everywhere.h"
 #include "parameters/expression.h"
 
 #include <deal.II/fe/fe_values.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace Nodus
 {
@@ -43,6 +48,18 @@ namespace Nodus
       std::vector<LoadedFace> faces;
       dealii::Vector<double>  dead; ///< forces at the current time that do not depend on the displacement
     };
+    /// Entries of the tangent below this part of the largest are what cancellation leaves.
+    constexpr double cancelled = 1e-13;
+
+    /// What stands for a degree of freedom: itself, what a hanging one hangs on, nothing where it is prescribed.
+    std::vector<std::pair<DoFIndex, double>> resolved(const DoFIndex dof, const AffineConstraints<double> &constraints)
+    {
+      if (!constraints.is_constrained(dof))
+        return {{dof, 1.}};
+      const auto *const entries = constraints.get_constraint_entries(dof);
+      return entries == nullptr ? std::vector<std::pair<DoFIndex, double>>()
+                                : std::vector<std::pair<DoFIndex, double>>(entries->begin(), entries->end());
+    }
   } // namespace
 
   struct Loads::Implementation
@@ -64,12 +81,17 @@ namespace Nodus
         faces.emplace_back(dof_handler.get_fe().base_element(0), face);
     }
 
-    void   add_cell(const CellIterator &cell);
-    void   evaluate(double t);
-    double value(const Load &load, const Point &X, unsigned int entry);
-    void   evaluate_dead_loads(LoadedCell &loaded);
-    void   add_pressure(const LoadedFace &loaded, const Cell &cell) const;
-    void   add_springs(const LoadedFace &loaded, const Cell &cell) const;
+    void                   add_cell(const CellIterator &cell);
+    void                   evaluate(double t);
+    double                 value(const Load &load, const Point &X, unsigned int entry);
+    void                   evaluate_dead_loads(LoadedCell &loaded);
+    std::array<Vector3, 2> tangents(const LoadedFace &loaded, unsigned int q, const std::vector<double> &u) const;
+    void add_cross(unsigned int a, unsigned int b, const Vector3 &w, FullMatrix<double> &matrix) const;
+    void add_pressure(const LoadedFace &loaded, const Cell &cell) const;
+    void
+    add_pressure_variation(const LoadedFace &loaded, const std::vector<double> &u, FullMatrix<double> &matrix) const;
+    bool follows(const LoadedCell &cell, const LoadedFace &face) const;
+    void add_springs(const LoadedFace &loaded, const Cell &cell) const;
 
     unsigned int dof(const unsigned int node, const unsigned int component) const
     {
@@ -206,9 +228,35 @@ namespace Nodus
     }
   }
 
-  /// Follower pressure (eq. B3): f_a = - int p N_a (t_0 x t_1) with the current tangents t. Of its derivative
-  /// int p N_a v_b x du_b, v_b = N_b,0 t_1 - N_b,1 t_0, the symmetric half is kept: exact for uniform pressure when the
-  /// edge of the loaded patch is held or the patch is closed, since the rest is an integral along that edge.
+  /// Current tangents t_0, t_1 at a quadrature point.
+  std::array<Vector3, 2>
+  Loads::Implementation::tangents(const LoadedFace &loaded, const unsigned int q, const std::vector<double> &u) const
+  {
+    const FaceTable       &table = faces[loaded.face];
+    std::array<Vector3, 2> t     = {{loaded.points[q].tangent[0], loaded.points[q].tangent[1]}};
+    for (unsigned int a = 0; a < table.nodes.size(); ++a)
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int s = 0; s < 2; ++s)
+          t[s][i] += u[dof(table.nodes[a], i)] * table.gradient[s][q][a];
+    return t;
+  }
+
+  /// Adds the matrix of -w x du_b to the rows of node @p a.
+  void Loads::Implementation::add_cross(const unsigned int  a,
+                                        const unsigned int  b,
+                                        const Vector3      &w,
+                                        FullMatrix<double> &matrix) const
+  {
+    for (unsigned int i = 0; i < dim; ++i)
+    {
+      const unsigned int k = (i + 1) % dim, m = (i + 2) % dim;
+      matrix(dof(a, i), dof(b, k)) += w[m];
+      matrix(dof(a, i), dof(b, m)) -= w[k];
+    }
+  }
+
+  /// Follower pressure (eq. B3): f_a = - int p N_a (t_0 x t_1) with the current tangents t. Its derivative is
+  /// int p N_a v_b x du_b, v_b = N_b,0 t_1 - N_b,1 t_0, of which this adds the symmetric half.
   void Loads::Implementation::add_pressure(const LoadedFace &loaded, const Cell &cell) const
   {
     const FaceTable     &table = faces[loaded.face];
@@ -216,11 +264,7 @@ namespace Nodus
     std::vector<Vector3> v(n);
     for (unsigned int q = 0; q < loaded.points.size(); ++q)
     {
-      Vector3 t[2] = {loaded.points[q].tangent[0], loaded.points[q].tangent[1]};
-      for (unsigned int a = 0; a < n; ++a)
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int s = 0; s < 2; ++s)
-            t[s][i] += cell.u[dof(table.nodes[a], i)] * table.gradient[s][q][a];
+      const auto    t     = tangents(loaded, q, cell.u);
       const double  p     = loaded.values[q] * loaded.points[q].weight;
       const Vector3 force = -p * cross_product_3d(t[0], t[1]);
       for (unsigned int a = 0; a < n; ++a)
@@ -232,15 +276,31 @@ namespace Nodus
         v[a] = table.gradient[0][q][a] * t[1] - table.gradient[1][q][a] * t[0];
       for (unsigned int a = 0; a < n; ++a)
         for (unsigned int b = 0; b < n; ++b)
-        {
-          const Vector3 w = p / 2. * (table.value[q][a] * v[b] - table.value[q][b] * v[a]);
-          for (unsigned int i = 0; i < dim; ++i)
-          {
-            const unsigned int k = (i + 1) % dim, m = (i + 2) % dim;
-            (*cell.tangent)(dof(table.nodes[a], i), dof(table.nodes[b], k)) += w[m];
-            (*cell.tangent)(dof(table.nodes[a], i), dof(table.nodes[b], m)) -= w[k];
-          }
-        }
+          add_cross(table.nodes[a],
+                    table.nodes[b],
+                    p / 2. * (table.value[q][a] * v[b] - table.value[q][b] * v[a]),
+                    *cell.tangent);
+    }
+  }
+
+  /// The other half, an integral along the edge of the face.
+  void Loads::Implementation::add_pressure_variation(const LoadedFace          &loaded,
+                                                     const std::vector<double> &u,
+                                                     FullMatrix<double>        &matrix) const
+  {
+    const FaceTable     &table = faces[loaded.face];
+    const unsigned int   n     = table.nodes.size();
+    std::vector<Vector3> v(n);
+    for (unsigned int q = 0; q < loaded.points.size(); ++q)
+    {
+      const auto   t = tangents(loaded, q, u);
+      const double p = loaded.values[q] * loaded.points[q].weight;
+      for (unsigned int a = 0; a < n; ++a)
+        v[a] = table.gradient[0][q][a] * t[1] - table.gradient[1][q][a] * t[0];
+      for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int b = 0; b < n; ++b)
+          add_cross(
+              table.nodes[a], table.nodes[b], p / 2. * (table.value[q][a] * v[b] + table.value[q][b] * v[a]), matrix);
     }
   }
 
@@ -265,6 +325,12 @@ namespace Nodus
                   stiffness * table.value[q][a] * table.value[q][b];
         }
       }
+  }
+
+  /// Whether the load is a pressure that follows the face.
+  bool Loads::Implementation::follows(const LoadedCell &cell, const LoadedFace &face) const
+  {
+    return face.load->parameters->type == Type::pressure && !material(cell.cell).small_strain();
   }
 
   double Loads::spring_energy(const unsigned int number, const std::vector<double> &u) const
@@ -321,7 +387,54 @@ namespace Nodus
     for (const auto &face : loaded.faces)
       if (face.load->parameters->type == Type::spring)
         implementation_->add_springs(face, cell);
-      else if (face.load->parameters->type == Type::pressure && !implementation_->material(loaded.cell).small_strain())
+      else if (implementation_->follows(loaded, face))
         implementation_->add_pressure(face, cell);
+  }
+
+  void Loads::add_variation(const Vector &u, const AffineConstraints<double> &constraints, LinearSystem &system) const
+  {
+    const Implementation &l = *implementation_;
+    if (std::none_of(
+            l.loads.begin(), l.loads.end(), [](const Load &load) { return load.parameters->type == Type::pressure; }))
+      return;
+    const unsigned int       n = l.dof_handler.get_fe().n_dofs_per_cell();
+    std::vector<DoFIndex>    dofs(n);
+    std::vector<double>      at_cell(n);
+    FullMatrix<double>       matrix(n, n);
+    std::vector<MatrixEntry> entries, prescribed; // of the second, the columns mean nothing
+    for (const LoadedCell &loaded : l.loaded_cells)
+    {
+      matrix = 0.;
+      loaded.cell->get_dof_indices(dofs);
+      for (unsigned int i = 0; i < n; ++i)
+        at_cell[i] = u(dofs[i]);
+      for (const LoadedFace &face : loaded.faces)
+        if (l.follows(loaded, face))
+          l.add_pressure_variation(face, at_cell, matrix);
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          if (matrix(i, j) != 0.)
+            for (const auto &[row, row_part] : resolved(dofs[i], constraints))
+            {
+              for (const auto &[column, part] : resolved(dofs[j], constraints))
+                entries.push_back({row, column, row_part * part * matrix(i, j)});
+              if (const double given = constraints.get_inhomogeneity(dofs[j]); given != 0.)
+                prescribed.push_back({row, 0, row_part * matrix(i, j) * given});
+            }
+    }
+    const Ownership   ownership(system.layout->owned[0], system.layout->communicator);
+    const double      negligible = cancelled * system.bulk.largest_diagonal();
+    const OwnedValues rhs(system.rhs.block(0));
+    for (const MatrixEntry &e : ownership.exchange(std::move(prescribed)))
+      rhs(e.row) -= e.value;
+    bool any = false;
+    for (const MatrixEntry &e : ownership.exchange(std::move(entries)))
+      if (std::abs(e.value) > negligible)
+      {
+        any = true;
+        system.variation.add(e.row, e.column, e.value);
+      }
+    if (Utilities::MPI::logical_or(any, system.layout->communicator))
+      system.symmetric = false;
   }
 } // namespace Nodus

@@ -3,9 +3,11 @@
 
 #include "bulk/boundary_conditions.h"
 #include "bulk/material.h"
+#include "solve/linear_system.h"
 
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/mapping.h>
+#include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/vector.h>
 
@@ -44,6 +46,12 @@ namespace Nodus
     };
     /// Adds the loads of a cell that they act on, at the time of evaluate().
     void add(unsigned int number, const Cell &cell) const;
+
+    /// Adds to the variation of @p system, and to its right-hand side where @p constraints prescribe displacements, the
+    /// half of the tangent of follower pressures that is not symmetric (eq. B3), unless it cancels; the other half is
+    /// part of add(). @p u: displacement with ghosts. Collective.
+    void
+    add_variation(const Vector &u, const dealii::AffineConstraints<double> &constraints, LinearSystem &system) const;
 
     /// Energy stored in the springs of a cell that loads act on, at the displacement @p u of its nodes.
     double spring_energy(unsigned int number, const std::vector<double> &u) const;

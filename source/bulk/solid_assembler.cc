@@ -367,6 +367,13 @@ namespace Nodus
     scratch_->sweep(u, t, internal, external, nullptr, nullptr, nullptr);
   }
 
+  void SolidAssembler::add_variation(const Vector                    &u,
+                                     const AffineConstraints<double> &constraints,
+                                     LinearSystem                    &system) const
+  {
+    scratch_->loads.add_variation(u, constraints, system);
+  }
+
   void SolidAssembler::tangent(const Vector                    &u,
                                const double                     t,
                                const AffineConstraints<double> &constraints,

@@ -16,6 +16,8 @@
 
 namespace Nodus
 {
+  struct LinearSystem;
+
   /// Internal and external forces of the bodies and their tangent, total Lagrangian, full integration
   /// ((degree+1)^3 Gauss points), on the reference configuration. Holds the states of laws with history at these
   /// points: those that the increment starts from, and where the last displacement leads to from there.
@@ -51,6 +53,9 @@ namespace Nodus
                  Vector                                  &rhs,
                  Vector                                  &internal,
                  Vector                                  &external) const;
+    /// Adds what of the loads' tangent is not symmetric to @p system: Loads::add_variation().
+    void
+    add_variation(const Vector &u, const dealii::AffineConstraints<double> &constraints, LinearSystem &system) const;
 
     /// Gives @p tangent its pattern; the last matrix that got one is that of tangent(). Hanging nodes have a diagonal
     /// alone.

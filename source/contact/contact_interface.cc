@@ -3,7 +3,6 @@
 #include "contact/initial_overlap.h"
 #include "contact/intrusion.h"
 #include "contact/loci.h"
-#include "contact/master_request.h"
 #include "contact/site_values.h"
 #include "contact/tractions.h"
 #include "mesh/sides.h"
@@ -17,23 +16,6 @@
 
 namespace Nodus
 {
-  namespace
-  {
-    /// Where a step would take nodes through the other surface they end this part of a face behind it.
-    constexpr double landing_depth = 0.25;
-
-    /// rho_n = factor E/h: the stiffness of a layer one slave face deep, of the softer material.
-    std::vector<double> normal_augmentation(const std::vector<ContactPairParameters> &pairs,
-                                            const std::vector<double>                &stiffness,
-                                            const ContactSurfaces                    &surfaces)
-    {
-      std::vector<double> augmentation;
-      for (unsigned int p = 0; p < pairs.size(); ++p)
-        augmentation.push_back(pairs[p].normal_augmentation_factor * stiffness[p] / surfaces.face_size(p));
-      return augmentation;
-    }
-  } // namespace
-
   ContactInterface::ContactInterface(const std::vector<ContactPairParameters> &pairs,
                                      const std::vector<double>                &stiffness,
                                      const StrategyParameters                 &strategy,
@@ -46,7 +28,7 @@ namespace Nodus
       , rigid_bodies_(rigid_bodies)
       , now_(now)
       , surfaces_(pairs, bodies, dof_handler, mapping)
-      , status_(pairs, surfaces_, normal_augmentation(pairs, stiffness, surfaces_), stiffness, strategy, now.statuses)
+      , status_(pairs, surfaces_, stiffness, strategy, now.statuses)
       , assembler_(surfaces_, pairing_, jump_, weights_, status_)
   {
     std::vector<unsigned int> rigid_numbers(bodies.size(), dealii::numbers::invalid_unsigned_int);
@@ -153,13 +135,7 @@ namespace Nodus
     std::vector<Vector3> before, now;
     surfaces_.gather(from, before);
     surfaces_.gather(to, now);
-    const std::vector<Point> x = surfaces_.positions(before);
-    std::vector<double>      seen, landing;
-    for (const double reach : search_reach(pairs_, surfaces_, x))
-      seen.push_back(0.5 * reach);
-    for (unsigned int p = 0; p < pairs_.size(); ++p)
-      landing.push_back(landing_depth * surfaces_.face_size(p));
-    return part_before_passage(surfaces_, x, surfaces_.positions(now), seen, landing);
+    return Nodus::visible_part(pairs_, surfaces_, surfaces_.positions(before), surfaces_.positions(now));
   }
 
   void ContactInterface::resume(const BlockVector &unknowns, const Vector &start)
@@ -175,7 +151,7 @@ namespace Nodus
     paired_at_ = state_.x;
     surfaces_.place_carried_masters(paired_at_);
     geometry_ = std::make_unique<ContactGeometry>(pairs_, surfaces_, paired_at_);
-    averaged_.compute(pairs_, surfaces_, *geometry_, paired_at_, reference_positions());
+    averaged_.compute(pairs_, surfaces_, *geometry_, paired_at_, surfaces_.reference_positions());
     pairing_.project(pairs_, surfaces_, *geometry_, averaged_);
     jump_.build(pairs_, surfaces_, *geometry_, pairing_, averaged_);
     weigh();
@@ -194,7 +170,7 @@ namespace Nodus
 
   void ContactInterface::weigh()
   {
-    weights_.compute(pairs_, surfaces_, averaged_, paired_at_, reference_positions(), status_.lumped());
+    weights_.compute(pairs_, surfaces_, averaged_, paired_at_, surfaces_.reference_positions(), status_.lumped());
   }
 
   /// On a new mesh: sites that stick do so where the surfaces stuck, not where interpolated displacements that are not
@@ -229,15 +205,10 @@ namespace Nodus
     status_.initialize(pairing_, distances);
   }
 
-  std::vector<Point> ContactInterface::reference_positions() const
-  {
-    return surfaces_.positions(std::vector<Vector3>(surfaces_.nodes().size()));
-  }
-
   /// Displacements of the surface nodes.
   std::vector<Vector3> ContactInterface::displacement() const
   {
-    const std::vector<Point> X = reference_positions();
+    const std::vector<Point> X = surfaces_.reference_positions();
     std::vector<Vector3>     u(X.size());
     for (unsigned int n = 0; n < u.size(); ++n)
       u[n] = state_.x[n] - X[n];

@@ -185,7 +185,6 @@ namespace Nodus
     void                 weigh();
     void                 carry_over_sticking();
     void                 start_statuses();
-    std::vector<Point>   reference_positions() const;
     std::vector<Vector3> displacement() const;
     StatusInput          status_input() const;
 

@@ -1,5 +1,5 @@
-#include "base/complete_file.h"
 #include "contact/status.h"
+#include "parallel/throw_everywhere.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -87,7 +87,7 @@ namespace Nodus
                   << pair_label(pairs_, surfaces_.pair(k)) << " is " << factor << " at (" << X << ") for the slip rate "
                   << rate[k] << "; it must be >= 0 everywhere";
       }
-    throw_on_every_rank(problem.str(), surfaces_.layout().communicator);
+    throw_everywhere<InputError>(problem.str(), surfaces_.layout().communicator);
     surfaces_.site_exchange().update(now_.friction_factor);
   }
 

@@ -1,4 +1,5 @@
 #include "contact/intrusion.h"
+#include "contact/master_request.h"
 #include "contact/other_side.h"
 
 #include <deal.II/base/mpi.h>
@@ -15,6 +16,8 @@ namespace Nodus
 
     /// Nodes that touch begin their way this part of the tolerated depth outside, lest they begin behind.
     constexpr double lift = 0.1;
+    /// Where a step would take nodes through the other surface they end this part of a face behind it.
+    constexpr double landing_depth = 0.25;
 
     /// What is found of one pair.
     class Search
@@ -95,7 +98,8 @@ namespace Nodus
         return found;
       }
 
-      /// See part_before_passage(), of nodes of @p side. On this rank, but collective.
+      /// See visible_part(), of the nodes of the faces @p own, which end @p landing behind the others. On this rank,
+      /// but collective.
       double part_before_passage(const std::vector<SurfaceFace> &own,
                                  const std::vector<SurfaceFace> &other,
                                  const double                    landing) const
@@ -262,22 +266,23 @@ namespace Nodus
     return result;
   }
 
-  double part_before_passage(const ContactSurfaces     &surfaces,
-                             const std::vector<Point>  &before,
-                             const std::vector<Point>  &now,
-                             const std::vector<double> &tolerated,
-                             const std::vector<double> &landing)
+  double visible_part(const std::vector<ContactPairParameters> &pairs,
+                      const ContactSurfaces                    &surfaces,
+                      const std::vector<Point>                 &before,
+                      const std::vector<Point>                 &now)
   {
-    double part = 1.;
+    const std::vector<double> reach = search_reach(pairs, surfaces, before);
+    double                    part  = 1.;
     for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
     {
       if (surfaces.rigid_master(p) != nullptr)
         continue;
-      const Search search(surfaces, before, now, tolerated[p]);
+      const Search search(surfaces, before, now, 0.5 * reach[p]);
+      const double landing = landing_depth * surfaces.face_size(p);
       const auto  &slaves = surfaces.slave_faces(p), &masters = surfaces.master_faces(p);
       part = std::min({part,
-                       search.part_before_passage(slaves, masters, landing[p]),
-                       search.part_before_passage(masters, slaves, landing[p])});
+                       search.part_before_passage(slaves, masters, landing),
+                       search.part_before_passage(masters, slaves, landing)});
     }
     return dealii::Utilities::MPI::min(part, surfaces.layout().communicator);
   }

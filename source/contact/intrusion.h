@@ -60,14 +60,13 @@ namespace Nodus
                                          double                     end,
                                          const std::vector<double> &tolerated);
 
-  /// The part, 0 to 1, of the way from @p before to @p now after which the first of the nodes that pass (above, deeper
-  /// than @p tolerated of their pair) are no deeper than @p landing of their pair behind the other surface; 1 where
-  /// none passes. Of rigid masters in closed form nothing is said. Collective.
-  double part_before_passage(const ContactSurfaces     &surfaces,
-                             const std::vector<Point>  &before,
-                             const std::vector<Point>  &now,
-                             const std::vector<double> &tolerated,
-                             const std::vector<double> &landing);
+  /// The part, 0 to 1, of the way from @p before to @p now on which no node goes farther behind the other surface than
+  /// pairing looks (search_reach()). Where one would, the way ends a quarter of a face behind the surface; 1 where none
+  /// does. Of rigid masters in closed form nothing is said. Collective.
+  double visible_part(const std::vector<ContactPairParameters> &pairs,
+                      const ContactSurfaces                    &surfaces,
+                      const std::vector<Point>                 &before,
+                      const std::vector<Point>                 &now);
 } // namespace Nodus
 
 #endif

@@ -26,21 +26,23 @@ namespace Nodus
 
   Status::Status(const std::vector<ContactPairParameters> &pairs,
                  const ContactSurfaces                    &surfaces,
-                 const std::vector<double>                &normal_augmentation,
                  const std::vector<double>                &stiffness,
                  const StrategyParameters                 &strategy,
                  State                                    &now)
       : pairs_(pairs)
       , surfaces_(surfaces)
       , strategy_(strategy)
-      , normal_augmentation_(normal_augmentation)
       , now_(now)
       , threshold_slope_(surfaces.n_sites(), 0.)
       , threshold_floor_(pairs.size(), 0.)
       , ledger_(surfaces.n_sites())
   {
     for (unsigned int p = 0; p < pairs.size(); ++p)
+    {
       limits_.emplace_back(pairs[p], stiffness[p]);
+      // rho_n = factor E/h: the stiffness of a layer one slave face deep, of the softer material
+      normal_augmentation_.push_back(pairs[p].normal_augmentation_factor * stiffness[p] / surfaces.face_size(p));
+    }
     const unsigned int n = surfaces.n_sites();
     now_.contact.assign(n, false);
     now_.stick.assign(n, true);

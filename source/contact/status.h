@@ -58,11 +58,10 @@ namespace Nodus
       std::vector<double>                friction_factor; ///< of the last slip rate
     };
 
-    /// @p normal_augmentation and @p stiffness of each pair [pressure/length, pressure]; @p strategy: what is tried
-    /// where statuses cycle. @p now outlives it, and is what it reads and moves; it is set to that of open sites.
+    /// @p stiffness of each pair [pressure]; @p strategy: what is tried where statuses cycle. @p now outlives it, and
+    /// is what it reads and moves; it is set to that of open sites.
     Status(const std::vector<ContactPairParameters> &pairs,
            const ContactSurfaces                    &surfaces,
-           const std::vector<double>                &normal_augmentation,
            const std::vector<double>                &stiffness,
            const StrategyParameters                 &strategy,
            State                                    &now);

@@ -352,4 +352,9 @@ namespace Nodus
       x[i] = nodes_[i].X + u[i];
     return x;
   }
+
+  std::vector<Point> ContactSurfaces::reference_positions() const
+  {
+    return positions(std::vector<Vector3>(nodes_.size()));
+  }
 } // namespace Nodus

@@ -305,6 +305,7 @@ namespace Nodus
 
     /// x = X + u for all nodes.
     std::vector<Point> positions(const std::vector<Vector3> &u) const;
+    std::vector<Point> reference_positions() const;
 
   private:
     std::string overlap() const;

@@ -1,4 +1,5 @@
 #include "mesh/bodies.h"
+#include "mesh/memory.h"
 #include "mesh/mesh_share.h"
 #include "parallel/throw_everywhere.h"
 #include "parallel/wait_for_all.h"
@@ -71,11 +72,12 @@ namespace Nodus
   Bodies::Bodies(const std::vector<BodyParameters>   &parameters,
                  const MPI_Comm                       communicator,
                  const bool                           may_be_refined,
-                 const std::vector<RegionParameters> &slaves)
+                 const std::vector<RegionParameters> &slaves,
+                 const unsigned int                   degree)
       : curved_(std::make_shared<CurvedGeometry>())
   {
     Manifolds        manifolds;
-    const CoarseMesh mesh = read(parameters, manifolds, communicator);
+    const CoarseMesh mesh = read(parameters, degree, manifolds, communicator);
     // manifolds belong to lines and faces of all cells, and what carries a rigid body is looked for in all cells
     const bool refinable = may_be_refined || !manifolds.empty() ||
                            std::any_of(parameters.begin(),
@@ -87,7 +89,7 @@ namespace Nodus
       make_refinable(mesh, manifolds, communicator);
     else
       make_share(mesh, slaves, communicator);
-    refine(parameters);
+    refine(parameters, degree);
     collect_extents();
   }
 
@@ -148,7 +150,7 @@ namespace Nodus
 
   /// In the distributed triangulation, so that the coarse mesh stays small and p4est knows the hierarchy. Bodies share
   /// no face, so different levels of theirs make no hanging nodes.
-  void Bodies::refine(const std::vector<BodyParameters> &parameters)
+  void Bodies::refine(const std::vector<BodyParameters> &parameters, const unsigned int degree)
   {
     unsigned int n_levels = 0;
     for (const auto &body : parameters)
@@ -165,6 +167,7 @@ namespace Nodus
     for (unsigned int level = 0; level < n_levels; ++level)
     {
       std::string problem;
+      double      n_cells = 0.; // after this level
       for (const auto &cell : triangulation_->active_cell_iterators())
         if (cell->is_locally_owned())
         {
@@ -188,8 +191,12 @@ namespace Nodus
               ++n_local[b];
             }
           }
+          n_cells += cell->refine_flag_set() ? 8. : 1.;
         }
       throw_everywhere<InputError>(problem, triangulation_->get_communicator());
+      refuse_beyond_memory(dealii::Utilities::MPI::sum(n_cells, triangulation_->get_communicator()),
+                           degree,
+                           triangulation_->get_communicator());
       triangulation_->execute_coarsening_and_refinement();
     }
     dealii::Utilities::MPI::sum(n_local, triangulation_->get_communicator(), n_local);

@@ -33,12 +33,14 @@ namespace Nodus
   public:
     /// Reads or generates every body, transforms it and concatenates the coarse meshes without gluing.
     /// @throws InputError: missing file or one of third order, no hexahedra, inverted cells, unknown volume id or
-    /// generator.
+    /// generator, a solution that would not fit into memory.
     /// @param may_be_refined after this @param slaves whose faces make their cells heavier when the mesh is divided
+    /// @param degree of the elements, for the memory that the solution takes
     Bodies(const std::vector<BodyParameters>   &parameters,
            MPI_Comm                             communicator,
            bool                                 may_be_refined = true,
-           const std::vector<RegionParameters> &slaves         = {});
+           const std::vector<RegionParameters> &slaves         = {},
+           unsigned int                         degree         = 1);
 
     /// Boundary id of faces that are no part of any boundary.
     static constexpr dealii::types::boundary_id no_boundary = dealii::numbers::internal_face_boundary_id - 1;
@@ -111,10 +113,13 @@ namespace Nodus
 
     using Manifolds = std::map<dealii::types::manifold_id, std::unique_ptr<dealii::Manifold<dim>>>;
 
-    CoarseMesh read(const std::vector<BodyParameters> &parameters, Manifolds &manifolds, MPI_Comm communicator);
+    CoarseMesh read(const std::vector<BodyParameters> &parameters,
+                    unsigned int                       degree,
+                    Manifolds                         &manifolds,
+                    MPI_Comm                           communicator);
     void       make_share(const CoarseMesh &mesh, const std::vector<RegionParameters> &slaves, MPI_Comm communicator);
     void       make_refinable(const CoarseMesh &mesh, const Manifolds &manifolds, MPI_Comm communicator);
-    void       refine(const std::vector<BodyParameters> &parameters);
+    void       refine(const std::vector<BodyParameters> &parameters, unsigned int degree);
     void       place_vertices();
     void       collect_extents();
   };

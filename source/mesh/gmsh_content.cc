@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -99,6 +100,15 @@ namespace Nodus
         return value;
       }
 
+      /// How many numbers follow, each of which takes two characters at least.
+      std::size_t count()
+      {
+        const auto n = next<std::size_t>();
+        if (n > static_cast<std::size_t>(end_ - here_) / 2)
+          fail("announces " + std::to_string(n) + " entries and ends before them; write it again with gmsh");
+        return n;
+      }
+
       std::string read_format()
       {
         const std::string version(word());
@@ -120,7 +130,7 @@ namespace Nodus
 
       unsigned int read_physical_ids()
       {
-        PhysicalIds ids(next<std::size_t>());
+        PhysicalIds ids(count());
         for (int &id : ids)
           id = std::abs(next<int>()); // the sign holds the orientation only
         return group_of(std::move(ids));
@@ -150,7 +160,10 @@ namespace Nodus
         Point p;
         for (unsigned int d = 0; d < dim; ++d)
           p[d] = next<double>();
-        index_[tag] = content_.vertices.size();
+        if (!std::isfinite(p.square()))
+          fail("has no finite position for node " + std::to_string(tag) + "; write it again with gmsh");
+        if (!index_.try_emplace(tag, content_.vertices.size()).second)
+          fail("defines node " + std::to_string(tag) + " twice; write it again with gmsh");
         content_.vertices.push_back(p);
       }
 
@@ -171,7 +184,7 @@ namespace Nodus
           const auto dimension = next<int>();
           next<int>(); // entity
           const bool        parametric = next<int>() != 0;
-          std::vector<long> tags(next<std::size_t>());
+          std::vector<long> tags(count());
           for (long &tag : tags)
             tag = next<long>();
           for (const long tag : tags)
@@ -190,7 +203,7 @@ namespace Nodus
         {
           next<long>(); // element number
           const auto type = next<int>();
-          tags.resize(next<std::size_t>());
+          tags.resize(count());
           for (int &tag : tags)
             tag = next<int>();
           read_element(type, group_of(tags.empty() || tags[0] == 0 ? PhysicalIds() : PhysicalIds{std::abs(tags[0])}));

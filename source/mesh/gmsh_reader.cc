@@ -102,16 +102,25 @@ namespace Nodus
           refuse_gmsh(name, "has no volume with physical id " + std::to_string(id) + "; ids present: " + list(present));
     }
 
+    /// In the order of deal.II.
+    std::array<unsigned int, 8> corners(const GmshContent &file, const GmshContent::Hexahedron &hexahedron)
+    {
+      std::array<unsigned int, 8> corner;
+      for (unsigned int v = 0; v < 8; ++v)
+        corner[dealii::GeometryInfo<dim>::ucd_to_deal[v]] = file.nodes[hexahedron.first_node + v];
+      return corner;
+    }
+
     /// Adds the selected hexahedra, with the vertex numbers of the file.
     void add_cells(const GmshContent &file, const std::vector<char> &selected, CoarseMesh &mesh)
     {
       for (const auto &hexahedron : file.hexahedra)
         if (selected[hexahedron.group])
         {
-          const unsigned int   *nodes = file.nodes.data() + hexahedron.first_node;
-          dealii::CellData<dim> cell;
-          for (unsigned int v = 0; v < 8; ++v)
-            cell.vertices[dealii::GeometryInfo<dim>::ucd_to_deal[v]] = nodes[v];
+          const unsigned int               *nodes  = file.nodes.data() + hexahedron.first_node;
+          const std::array<unsigned int, 8> corner = corners(file, hexahedron);
+          dealii::CellData<dim>             cell;
+          std::copy(corner.begin(), corner.end(), cell.vertices.begin());
           mesh.cells.push_back(cell);
           if (file.n_nodes_per_hexahedron > 8)
           {
@@ -161,6 +170,56 @@ namespace Nodus
       }
     }
 
+    /// Physical surfaces that belong to the hexahedra in part: the rest would be missing without a word. @throws
+    /// InputError
+    void refuse_stray_faces(const GmshContent &file, const std::string &name)
+    {
+      struct Found
+      {
+        unsigned int faces = 0, strays = 0;
+        Point        first;
+      };
+      std::vector<char> marked(file.vertices.size(), 0);
+      std::vector<Face> faces; // of hexahedra, all of whose corners have a physical surface
+      for (const auto &quadrilateral : file.quadrilaterals)
+        for (const unsigned int v : quadrilateral.corners)
+          marked[v] = marked[v] || !file.physical[quadrilateral.group].empty();
+      for (const auto &hexahedron : file.hexahedra)
+      {
+        const std::array<unsigned int, 8> corner = corners(file, hexahedron);
+        for (const unsigned int f : dealii::GeometryInfo<dim>::face_indices())
+        {
+          Face face;
+          for (unsigned int v = 0; v < 4; ++v)
+            face[v] = corner[dealii::GeometryInfo<dim>::face_to_cell_vertices(f, v)];
+          if (std::all_of(face.begin(), face.end(), [&](const unsigned int v) { return marked[v]; }))
+            faces.push_back(sorted(face));
+        }
+      }
+      std::sort(faces.begin(), faces.end());
+      std::map<int, Found> of_id;
+      for (const auto &quadrilateral : file.quadrilaterals)
+        for (const int id : file.physical[quadrilateral.group])
+        {
+          Found      &found = of_id[id];
+          const Face &c     = quadrilateral.corners;
+          ++found.faces;
+          if (!std::binary_search(faces.begin(), faces.end(), sorted(c)) && found.strays++ == 0)
+            found.first =
+                0.25 * (file.vertices[c[0]] + file.vertices[c[1]] + file.vertices[c[2]] + file.vertices[c[3]]);
+        }
+      for (const auto &[id, found] : of_id)
+        if (found.strays > 0 && found.strays < found.faces)
+        {
+          std::ostringstream text;
+          text << "has " << found.faces << " faces with the physical id " << id << ", of which " << found.strays
+               << " are no face of a hexahedron, the first at " << found.first
+               << "; mesh surfaces and volumes together, and save them all (Mesh.SaveAll=0 with the volumes in a "
+                  "physical group)";
+          refuse_gmsh(name, text.str());
+        }
+    }
+
     /// Turns the cells as deal.II wants them, the curved ones with them.
     void orient_cells(CoarseMesh &mesh)
     {
@@ -178,6 +237,7 @@ namespace Nodus
       : name_(name)
       , content_(std::make_unique<GmshContent>(read_gmsh(name)))
   {
+    refuse_stray_faces(*content_, name);
   }
   GmshFile::~GmshFile()                    = default;
   GmshFile::GmshFile(GmshFile &&) noexcept = default;

@@ -1,5 +1,5 @@
 #include "mesh/mesh_share.h"
-#include "base/complete_file.h"
+#include "parallel/throw_everywhere.h"
 #include "parallel/wait_for_all.h"
 
 #include <deal.II/base/geometry_info.h>
@@ -273,7 +273,7 @@ namespace Nodus
         failure = error.what();
       }
     wait_for_all(communicator);
-    throw_on_every_rank(failure, communicator);
+    throw_everywhere<InputError>(failure, communicator);
 
     unsigned int size[] = {static_cast<unsigned int>(mesh.vertices.size()),
                            static_cast<unsigned int>(mesh.cells.size()),

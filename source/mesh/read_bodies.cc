@@ -1,7 +1,9 @@
 #include "mesh/bodies.h"
 #include "mesh/gmsh_reader.h"
+#include "mesh/memory.h"
 #include "mesh/mesh_share.h"
 #include "parameters/expression.h"
+#include "parameters/generators.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>
@@ -11,6 +13,7 @@
 #include <deal.II/physics/transformations.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <regex>
@@ -257,8 +260,10 @@ namespace Nodus
     }
   } // namespace
 
-  CoarseMesh
-  Bodies::read(const std::vector<BodyParameters> &parameters, Manifolds &manifolds, const MPI_Comm communicator)
+  CoarseMesh Bodies::read(const std::vector<BodyParameters> &parameters,
+                          const unsigned int                 degree,
+                          Manifolds                         &manifolds,
+                          const MPI_Comm                     communicator)
   {
     if (parameters.empty())
       throw InputError("There is no body; add a subsection 'Body 1'");
@@ -278,17 +283,21 @@ namespace Nodus
 
         const Placement placement(body);
         CoarseMesh      mesh;
+        const auto      check_size = [&](const double n_coarse_cells)
+        { refuse_beyond_memory(n_coarse_cells * std::pow(8., body.global_refinement), degree, communicator); };
         if (!body.mesh_file.empty())
           mesh = from_first_rank(
               [&] { return files.try_emplace(body.mesh_file, body.mesh_file).first->second.body(body.volume_ids); },
               communicator);
         else
         {
+          check_size(Generators::n_cells(body.generator, body.generator_arguments));
           generated_.push_back(generate(body));
           std::tie(mesh.vertices, mesh.cells, mesh.boundary) =
               dealii::GridTools::get_coarse_mesh_description(*generated_.back());
           place_manifolds(*generated_.back(), placement, mesh, manifolds);
         }
+        check_size(mesh.cells.size());
         check_orientation(mesh, body.mesh_file.empty() ? "generator " + body.generator : "mesh file " + body.mesh_file);
         for (Point &vertex : mesh.vertices)
           vertex = placement.apply(vertex);

@@ -1,5 +1,6 @@
 #include "output/tables.h"
 #include "base/complete_file.h"
+#include "parallel/throw_everywhere.h"
 #include <nodus/base/remedy.h>
 
 #include <deal.II/base/mpi.h>
@@ -75,7 +76,6 @@ namespace Nodus
     for (const char *name : measure_names)
       rows_.contact += ',' + std::string(name) + ',' + name + " tolerance";
     rows_.contact += '\n';
-    make_results_folder(folder, communicator);
   }
 
   void Tables::add(const unsigned int                    increment,
@@ -166,7 +166,7 @@ namespace Nodus
       file.stream() << rows;
       problem = file.finish();
     }
-    throw_on_every_rank(problem, communicator_);
+    throw_everywhere<InputError>(problem, communicator_);
   }
 
   void Tables::add(const Iteration &iteration)

@@ -2,6 +2,7 @@
 #include "base/complete_file.h"
 #include "bulk/nodal_stress.h"
 #include "output/vtu_patches.h"
+#include "parallel/throw_everywhere.h"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/utilities.h>
@@ -201,18 +202,18 @@ namespace Nodus
     const auto piece = [&](const unsigned int r)
     { return stem + (n_ranks == 1 ? "" : '.' + Utilities::int_to_string(r, 4)) + ".vtu"; };
 
-    throw_on_every_rank(write_complete(folder, piece(rank), [&](std::ostream &out) { output.write_vtu(out); }),
-                        communicator);
+    throw_everywhere<InputError>(write_complete(folder, piece(rank), [&](std::ostream &out) { output.write_vtu(out); }),
+                                 communicator);
     if (n_ranks == 1)
       return;
     std::vector<std::string> pieces(n_ranks);
     for (unsigned int r = 0; r < n_ranks; ++r)
       pieces[r] = piece(r);
-    throw_on_every_rank(rank > 0 ? ""
-                                 : write_complete(folder,
-                                                  main_file(stem),
-                                                  [&](std::ostream &out) { output.write_pvtu_record(out, pieces); }),
-                        communicator);
+    throw_everywhere<InputError>(
+        rank > 0 ? ""
+                 : write_complete(
+                       folder, main_file(stem), [&](std::ostream &out) { output.write_pvtu_record(out, pieces); }),
+        communicator);
   }
 
   /// The pieces before the time series: whoever finds a file finds everything that it refers to.
@@ -225,7 +226,7 @@ namespace Nodus
     const std::string stem = series + '_' + Utilities::int_to_string(increment, 4);
     write_pieces(stem, output);
     written[series].emplace_back(t, main_file(stem));
-    throw_on_every_rank(rank == 0 ? write_record(series) : "", communicator);
+    throw_everywhere<InputError>(rank == 0 ? write_record(series) : "", communicator);
   }
 
   /// @returns what went wrong.
@@ -242,7 +243,6 @@ namespace Nodus
                        const SolidAssembler  &solid)
       : implementation_(new Implementation{folder, bodies, dof_handler, mapping, solid})
   {
-    make_results_folder(folder, implementation_->communicator);
   }
 
   VtuOutput::~VtuOutput() = default;
@@ -260,7 +260,7 @@ namespace Nodus
       for (const auto &one : series)
         if (problem.empty())
           problem = implementation_->write_record(one.first);
-    throw_on_every_rank(problem, implementation_->communicator);
+    throw_everywhere<InputError>(problem, implementation_->communicator);
   }
 
   void VtuOutput::write(const unsigned int                increment,

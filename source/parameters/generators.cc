@@ -6,7 +6,10 @@
 #include <deal.II/grid/tria.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <regex>
+#include <sstream>
 
 namespace Nodus
 {
@@ -54,6 +57,23 @@ namespace Nodus
                                   {"hyper_L", 0, 1},
                                   {"torus", 1, 0},
                                   {"moebius", 3, 2}};
+
+      /// Arguments whose numbers multiply to that of the cells, times a factor; an argument may come twice.
+      struct Count
+      {
+        const char               *name;
+        std::vector<unsigned int> arguments;
+      };
+      const Count counts[] = {{"subdivided_hyper_rectangle", {0}},
+                              {"subdivided_hyper_cube", {0, 0, 0}},
+                              {"cylinder_shell", {3, 4}},
+                              {"concentric_hyper_shells", {3}},
+                              {"hyper_cube_with_cylindrical_hole", {3}},
+                              {"plate_with_a_hole", {10}},
+                              {"hyper_cross", {0}},
+                              {"cheese", {0}},
+                              {"torus", {2}},
+                              {"moebius", {0}}};
 
       struct Generator
       {
@@ -262,6 +282,29 @@ namespace Nodus
         }
         return text == "true" || text == "false";
       }
+      /// Widths of cells must fill the box: deal.II looks at that in debug mode alone. @p given: arguments of
+      /// subdivided_hyper_rectangle.
+      std::string mistake_in_widths(const std::vector<std::string> &given)
+      {
+        const auto widths = dealii::Utilities::split_string_list(given[0], ';');
+        const auto from   = dealii::Utilities::string_to_double(dealii::Utilities::split_string_list(given[1], ','));
+        const auto to     = dealii::Utilities::string_to_double(dealii::Utilities::split_string_list(given[2], ','));
+        for (unsigned int d = 0; d < widths.size(); ++d)
+        {
+          double sum = 0.;
+          for (const double width :
+               dealii::Utilities::string_to_double(dealii::Utilities::split_string_list(widths[d], ',')))
+            sum += width;
+          if (const double length = std::abs(to[d] - from[d]); std::abs(sum - length) > 1e-8 * length)
+          {
+            std::ostringstream text;
+            text << "has widths of cells along "
+                 << "xyz"[d] << " that add up to " << sum << ", but the corners are " << length << " apart";
+            return text.str();
+          }
+        }
+        return "";
+      }
     } // namespace
 
     std::vector<std::string> names()
@@ -284,6 +327,31 @@ namespace Nodus
     std::string example(const std::string &name)
     {
       return find(name)->example;
+    }
+
+    double n_cells(const std::string &name, const std::string &arguments)
+    {
+      const auto given = dealii::Utilities::split_string_list(arguments, ':');
+      const auto count =
+          std::find_if(std::begin(counts), std::end(counts), [&](const Count &c) { return c.name == name; });
+      if (count == std::end(counts) || find(name) == nullptr || !mistake_in_arguments(name, arguments).empty())
+        return 1.;
+      double n = 1.;
+      for (const unsigned int i : count->arguments)
+      {
+        const Kind kind    = find(name)->arguments[i].kind;
+        const bool widths  = kind == Kind::steps && given[i].find(';') != std::string::npos;
+        double     product = 1., sum = 0.;
+        for (const std::string &item : dealii::Utilities::split_string_list(given[i], widths ? ';' : ','))
+        {
+          const double number = widths ? double(dealii::Utilities::split_string_list(item, ',').size())
+                                       : dealii::Utilities::string_to_double(item);
+          product *= std::max(1., number);
+          sum += number;
+        }
+        n *= kind == Kind::wholes ? std::max(1., sum) : product;
+      }
+      return n;
     }
 
     std::string mistake_in_name(const std::string &name)
@@ -326,6 +394,8 @@ namespace Nodus
                 dealii::Utilities::string_to_double(given[order.larger]))
           wrong = "has " + given[order.smaller] + " for " + expected[order.smaller].meaning + " of " + name +
                   ", which must be smaller than the " + given[order.larger] + " for " + expected[order.larger].meaning;
+      if (wrong.empty() && name == "subdivided_hyper_rectangle" && given[0].find(';') != std::string::npos)
+        wrong = mistake_in_widths(given);
       if (!wrong.empty())
         wrong += "; give, separated by ':', " + arguments(name) + "; for example " + generator->example;
       return wrong;

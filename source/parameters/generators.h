@@ -24,6 +24,9 @@ namespace Nodus
     /// What is wrong with number and kind of the arguments, which stand between ':'; empty when nothing is, or when
     /// the generator is one that names() does not have.
     std::string mistake_in_arguments(const std::string &name, const std::string &text);
+
+    /// Number of cells that the generator makes, but for a factor of 30 at most; 1 where the arguments do not say.
+    double n_cells(const std::string &name, const std::string &arguments);
   } // namespace Generators
 } // namespace Nodus
 

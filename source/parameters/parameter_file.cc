@@ -129,7 +129,8 @@ namespace Nodus
   ParameterFile::ParameterFile(const std::string &file, const std::vector<std::string> &overrides)
       : file_(file)
   {
-    if (std::filesystem::is_directory(file_))
+    std::error_code unknown; // a name that is too long is one that cannot be opened
+    if (std::filesystem::is_directory(file_, unknown))
       throw InputError(file_ + " is a folder; give the name of a .prm or .json file");
     std::ifstream stream(file_);
     if (!stream)

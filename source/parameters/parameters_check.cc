@@ -164,7 +164,8 @@ namespace Nodus
               !given, key, "has no effect on a rigid body without a mesh; remove it, or give Mesh file or Generator");
       if (!body.mesh_file.empty())
       {
-        section.require(std::filesystem::is_regular_file(body.mesh_file),
+        std::error_code unknown;
+        section.require(std::filesystem::is_regular_file(body.mesh_file, unknown),
                         "Mesh file",
                         "is no file: " + body.mesh_file + "; names are relative to the folder of the .prm file");
         section.require(body.generator_arguments.empty(), "Generator arguments", "goes with Generator only; remove it");

@@ -1,5 +1,5 @@
 #include "run/checkpoint.h"
-#include "base/complete_file.h"
+#include "parallel/throw_everywhere.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
@@ -132,6 +132,25 @@ namespace Nodus
   {
   }
 
+  std::string Checkpoints::set_aside()
+  {
+    fs::path before = folder_;
+    before += ".before";
+    std::string problem;
+    bool        moved = false;
+    if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0 && !increments_in(folder_).empty())
+    {
+      std::error_code error;
+      fs::remove_all(before, error);
+      fs::rename(folder_, before, error);
+      if (error)
+        problem = "cannot rename " + folder_.string() + ": " + error.message();
+      moved = !error;
+    }
+    throw_everywhere<InputError>(problem, communicator_);
+    return moved ? before.string() : "";
+  }
+
   void Checkpoints::write(const unsigned int increment, const std::vector<char> &common, const Piece &piece)
   {
     if (!kept_.empty() && kept_.back() == increment)
@@ -146,7 +165,7 @@ namespace Nodus
       if (!fs::create_directories(unfinished, error))
         problem = "cannot create the folder " + unfinished.string() + ": " + error.message();
     }
-    throw_on_every_rank(problem, communicator_);
+    throw_everywhere<InputError>(problem, communicator_);
 
     const std::string       name  = "piece." + dealii::Utilities::int_to_string(rank, 4);
     const std::vector<char> bytes = dealii::Utilities::pack(piece);
@@ -161,8 +180,8 @@ namespace Nodus
     index += index_entry("common", common.size(), checksum(common)) + last_line + '\n';
     try
     {
-      throw_on_every_rank(problem, communicator_);
-      throw_on_every_rank(rank == 0 ? finish(unfinished, increment, index) : "", communicator_);
+      throw_everywhere<InputError>(problem, communicator_);
+      throw_everywhere<InputError>(rank == 0 ? finish(unfinished, increment, index) : "", communicator_);
     }
     catch (const InputError &)
     {
@@ -221,7 +240,7 @@ namespace Nodus
       {
         problem = error.what();
       }
-    throw_on_every_rank(problem, communicator_);
+    throw_everywhere<InputError>(problem, communicator_);
     chosen = dealii::Utilities::MPI::broadcast(communicator_, chosen);
     if (chosen == dealii::numbers::invalid_unsigned_int)
       return {};

@@ -29,6 +29,10 @@ namespace Nodus
     /// The folder need not exist.
     Checkpoints(const std::string &results_folder, MPI_Comm communicator);
 
+    /// Renames the folder of an earlier run to checkpoints.before, in place of one that there is already. @returns its
+    /// new name, on rank 0, empty where there was none. Collective. @throws InputError
+    std::string set_aside();
+
     struct Piece
     {
       using CellKey = std::array<unsigned int, 4>; ///< CellId::to_binary() with Bodies::coarse_cell() first

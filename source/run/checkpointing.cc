@@ -1,5 +1,5 @@
 #include "run/checkpointing.h"
-#include "base/complete_file.h"
+#include "parallel/throw_everywhere.h"
 #include "run/state_vectors.h"
 #include <nodus/base/signals.h>
 
@@ -156,6 +156,13 @@ namespace Nodus
   {
   }
 
+  void Checkpointing::set_aside()
+  {
+    if (const std::string moved = checkpoints_.set_aside(); !moved.empty())
+      journal_.console.line("Checkpoints of an earlier run are kept in " + moved +
+                            " (to continue that run, name the folder checkpoints again)");
+  }
+
   bool Checkpointing::exists()
   {
     return checkpoints_.find().has_value();
@@ -216,11 +223,12 @@ namespace Nodus
       journal_.console.line("Passed over: " + found->remark);
     const Common      common = dealii::Utilities::unpack<Common>(found->common);
     const std::string other  = first_difference(common.model, model_of(model_.parameters));
-    throw_on_every_rank(other.empty() ? ""
-                                      : "the checkpoint in " + model_.parameters.output.results_folder +
-                                            " belongs to another model: " + other +
-                                            "; change it back, or begin without --restart in another Results folder",
-                        model_.communicator);
+    throw_everywhere<InputError>(other.empty()
+                                     ? ""
+                                     : "the checkpoint in " + model_.parameters.output.results_folder +
+                                           " belongs to another model: " + other +
+                                           "; change it back, or begin without --restart in another Results folder",
+                                 model_.communicator);
     path.continue_from(common.path);
     journal_.tables->continue_from(common.rows);
     if (VtuOutput *const vtu = results_.vtu())
@@ -319,8 +327,8 @@ namespace Nodus
             sites[n_site_values() * face->second + i] = values[i];
         }
     }
-    throw_on_every_rank(missing == 0 ? "" : "the checkpoint does not cover the mesh; begin without --restart",
-                        model_.communicator);
+    throw_everywhere<InputError>(missing == 0 ? "" : "the checkpoint does not cover the mesh; begin without --restart",
+                                 model_.communicator);
     model_.solid->set_history(histories);
 
     for (Vector &v : vectors)

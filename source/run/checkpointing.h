@@ -17,6 +17,9 @@ namespace Nodus
     /// All outlive it.
     Checkpointing(Model &model, Journal &journal, States &states, Equilibrium &equilibrium, Results &results);
 
+    /// Keeps the checkpoints of an earlier run, as checkpoints.before, out of the way of a run that begins anew.
+    /// Collective. @throws InputError
+    void set_aside();
     /// There is one to continue from. Collective. @throws InputError when all are damaged or of another format.
     bool exists();
     /// @p path: where the run is. Collective. @throws InputError when the disk does not take it.

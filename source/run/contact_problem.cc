@@ -1,10 +1,14 @@
 #include "base/complete_file.h"
+#include "output/results_folder.h"
+#include "parallel/throw_everywhere.h"
 #include "run/load_path.h"
 #include "run/validation.h"
 #include <nodus/base/signals.h>
 #include <nodus/run/contact_problem.h>
 
 #include <deal.II/base/mpi.h>
+
+#include <optional>
 
 namespace Nodus
 {
@@ -27,7 +31,7 @@ namespace Nodus
     }
 
     void        run();
-    void        begin();
+    void        begin(std::optional<ResultsFolder> &folder);
     void        validate();
     void        report_remedies();
     void        report_verdicts();
@@ -50,8 +54,8 @@ namespace Nodus
     std::function<void(unsigned int, double)> callback;
   };
 
-  /// Everything up to the first increment.
-  void ContactProblem::Implementation::begin()
+  /// Everything up to the first increment; the run holds its @p folder from then on.
+  void ContactProblem::Implementation::begin(std::optional<ResultsFolder> &folder)
   {
     {
       const auto timer = journal.profile.time(Phase::set_up);
@@ -75,6 +79,9 @@ namespace Nodus
         model.begin_contact(states.now);
         states.committed = states.now;
       }
+      folder.emplace(parameters.output.results_folder, model.communicator);
+      if (!restart)
+        checkpointing.set_aside();
       results.begin_on_mesh();
       journal.tables = std::make_unique<Tables>(parameters.output.results_folder, model.communicator);
       journal.diagnosis.begin_run();
@@ -86,7 +93,8 @@ namespace Nodus
 
   void ContactProblem::Implementation::run()
   {
-    begin();
+    std::optional<ResultsFolder> folder;
+    begin(folder);
     const auto report_anyway = [&]
     {
       report_remedies();
@@ -110,7 +118,7 @@ namespace Nodus
     }
     report_remedies();
     report_verdicts();
-    throw_on_every_rank(report_profile(true), model.communicator);
+    throw_everywhere<InputError>(report_profile(true), model.communicator);
     journal.console.line("Results: " + parameters.output.results_folder);
   }
 

@@ -211,6 +211,7 @@ namespace Nodus
       const auto timer = journal_.profile.time(Phase::contact_assembly);
       model_.contact->add_geometry_tangent(system_);
     }
+    model_.solid->add_variation(u_, *constraints_, system_);
     const auto timer = journal_.profile.time(Phase::solver_iterations);
     iterate_         = states_.now.unknowns;
     rigid_iterate_   = states_.now.rigid;

@@ -1,5 +1,5 @@
 #include "run/failure_report.h"
-#include "base/complete_file.h"
+#include "parallel/throw_everywhere.h"
 #include "run/unheld_bodies.h"
 
 #include <deal.II/base/mpi.h>
@@ -325,7 +325,7 @@ namespace Nodus
         evidence.state = vtu->state_file("failed_state");
         write_failed_state(p, "failed_state", det_F);
       }
-      throw_on_every_rank(p.journal.diagnosis.write(evidence), p.model.communicator);
+      throw_everywhere<InputError>(p.journal.diagnosis.write(evidence), p.model.communicator);
       return "; " + p.model.parameters.output.results_folder + "/diagnosis.md says more";
     }
     catch (const InputError &error)

@@ -109,7 +109,7 @@ namespace Nodus
     {
       ContactSurfaces &surfaces = model_.contact->surfaces();
       surfaces.fetch_masters(states_.now.unknowns.block(0));
-      const std::vector<Point> X = surfaces.positions(std::vector<Vector3>(surfaces.nodes().size()));
+      const std::vector<Point> X = surfaces.reference_positions();
       surfaces.place_carried_masters(X);
       RefinementIndicator indicator(model_.bodies.triangulation());
       {

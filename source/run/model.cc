@@ -47,7 +47,11 @@ namespace Nodus
   Model::Model(const Parameters &p, MPI_Comm comm, States &states)
       : parameters(p)
       , communicator(comm)
-      , bodies(parameters.bodies, comm, refines(parameters.adaptivity), slaves(parameters.contact_pairs))
+      , bodies(parameters.bodies,
+               comm,
+               refines(parameters.adaptivity),
+               slaves(parameters.contact_pairs),
+               parameters.degree)
       , mapping(bodies.make_mapping(parameters.degree))
       , fe(dealii::FE_Q<dim>(parameters.degree), dim)
       , dof_handler(bodies.triangulation())

@@ -12,6 +12,9 @@ execute_process(COMMAND ${LAUNCHER} ${NODUS} ${PRM} ${ARGUMENTS}
 get_filename_component(source_folder ${PRM} DIRECTORY)
 string(REPLACE "${source_folder}/" "" message "${message}")
 
+# ... nor on the machine.
+string(REGEX REPLACE "more than the [0-9.e+]+ GB" "more than the N GB" message "${message}")
+
 if(LAUNCHER)
   string(REGEX MATCHALL "nodus: [^\n]*\n" message "${message}")
   string(REPLACE ";nodus: " "nodus: " message "${message}")

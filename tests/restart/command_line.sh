@@ -1,6 +1,6 @@
 #!/bin/bash
-# nodus as a process: ends on SIGTERM and continues to the same tables; a folder that cannot be written in ends in one
-# message. Usage: command_line.sh <nodus> <prm> <empty folder>
+# nodus as a process: ends on SIGTERM and continues to the same tables; two runs do not share a results folder, a run that
+# begins anew keeps the checkpoints of the one before, and a folder that cannot be written in ends in one message. Usage: command_line.sh <nodus> <prm> <empty folder>
 set -u
 nodus=$1 prm=$2 folder=$3
 rm -rf "$folder" && mkdir -p "$folder" && cd "$folder" || exit 1
@@ -30,6 +30,9 @@ for _ in $(seq 600); do
   [ -f parts/contact.csv ] && [ "$(wc -l < parts/contact.csv)" -gt 5 ] && break
   sleep 0.05
 done
+run parts > second.log 2> second.message
+[ $? = 1 ] || fail "a second run in the folder: exit code $?"
+grep -q "another run is writing to the results folder parts.*Output/Results folder" second.message || fail "$(cat second.message)"
 kill -TERM $process || fail "it was over before the signal"
 wait $process
 [ $? = 143 ] || fail "exit code $? instead of 143"
@@ -40,6 +43,25 @@ for table in contact.csv reactions.csv energy.csv; do
   cmp whole/$table parts/$table || fail "$table differs"
 done
 diff <(grep DataSet whole/bodies.pvd) <(grep DataSet parts/bodies.pvd) || fail "bodies.pvd differs"
+
+in_place=exec
+run parts > anew.log & # a process of its own, to be ended
+process=$!
+in_place=
+for _ in $(seq 600); do
+  grep -q "^Increment 2" anew.log && break
+  sleep 0.05
+done
+kill -TERM $process
+wait $process
+grep -q "^Checkpoints of an earlier run are kept in parts/checkpoints.before" anew.log || fail "$(cat anew.log)"
+[ "$(ls parts/checkpoints.before | wc -l)" -gt 0 ] || fail "checkpoints.before is empty"
+
+long=$(printf 'x%.0s' $(seq 300))
+run "$long" > long.log 2> long.message
+[ $? = 1 ] || fail "folder name too long: exit code $?"
+grep -q "^nodus: input error: .*cannot create the results folder x*: File name too long.*Output/Results folder" long.message ||
+  fail "$(cat long.message)"
 
 run /proc/nodus > unwritable.log 2> unwritable.message
 [ $? = 1 ] || fail "unwritable folder: exit code $?"

@@ -246,6 +246,10 @@ int main(int argc, char **argv)
   write("cut.msh", format_22.substr(0, format_22.size() - 40));
   write("two_ids.msh", replaced(format_22, "4 3 2 9 3 9 10 11 12", "4 3 2 9 3 2 1 4 3"));
   write("text.msh", "hello\n");
+  write("twice.msh", replaced(format_22, "13 5 5 5", "12 5 5 5"));
+  write("nowhere_at.msh", replaced(format_22, "13 5 5 5", "13 5 nan 5"));
+  write("endless.msh", replaced(format_22, "1 15 2 0 1 13", "1 15 4000000000000 0 1 13"));
+  write("stray.msh", replaced(format_22, "3 3 2 8 2 5 6 7 8", "3 3 2 9 2 5 6 7 1"));
   refused_bodies("third order", {lower, from_file("cubic.msh")});
   refused_bodies("missing", {from_file("nowhere.msh")});
   refused_bodies("tetrahedra", {from_file("tetrahedra.msh")});
@@ -256,6 +260,10 @@ int main(int argc, char **argv)
   refused_bodies("cut", {from_file("cut.msh")});
   refused_bodies("two ids", {from_file("two_ids.msh")});
   refused_bodies("no mesh", {from_file("text.msh")});
+  refused_bodies("node defined twice", {from_file("twice.msh")});
+  refused_bodies("position that is no number", {from_file("nowhere_at.msh")});
+  refused_bodies("more entries than the file has", {from_file("endless.msh")});
+  refused_bodies("a face that is none of a cell", {from_file("stray.msh")});
   refused_bodies("volume id", {from_file("two_41.msh", {1, 5})});
   refused_bodies("generator", {generated("block", "hyper_blob", "0 : 1")});
   refused_bodies("arguments", {generated("block", "hyper_cube", "0 : one")});

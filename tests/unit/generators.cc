@@ -44,6 +44,11 @@ int main(int argc, char **argv)
                                           ? ""
                                           : ": NO"));
 
+    const double counted = Generators::n_cells(name, example); // but for a factor
+    report("  counted from the arguments",
+           std::to_string(static_cast<unsigned int>(counted)) +
+               (counted <= n_cells && n_cells <= 30. * counted ? "" : ": NO"));
+
     const auto   right      = dealii::Utilities::split_string_list(example, ':');
     unsigned int n_detected = 0;
     for (unsigned int wrong = 0; wrong < right.size(); ++wrong)
@@ -61,5 +66,9 @@ int main(int argc, char **argv)
       "cells of different widths",
       Generators::mistake_in_arguments("subdivided_hyper_rectangle", "0.5,0.5; 1; 1 : 0,0,0 : 1,1,1 : true").empty() &&
           cells_of("subdivided_hyper_rectangle", "0.5,0.5; 1; 1 : 0,0,0 : 1,1,1 : true") == 2);
+  report("widths that do not fill the box",
+         Generators::mistake_in_arguments("subdivided_hyper_rectangle", "0.5,0.6; 1; 1 : 0,0,0 : 1,1,1 : true"));
+  report("cells along the edge",
+         std::to_string(Generators::n_cells("subdivided_hyper_rectangle", "0.5,0.5; 1; 1,2,3 : 0,0,0 : 1,1,6 : true")));
   check("the name of another generator of deal.II is left to it", Generators::mistake_in_name("simplex").empty());
 }

@@ -3,6 +3,7 @@
 // rank and leaves no trace.
 
 #include "bulk/solid_assembler.h"
+#include "solve/linear_system.h"
 
 #include "../numbers.h"
 
@@ -123,6 +124,11 @@ namespace
                                                    boundary_conditions->loads(),
                                                    std::vector<Treatment>{parameters.volumetric_treatment});
       assembler->make_sparsity(K);
+      layout.communicator = communicator;
+      layout.owned[0]     = dof_handler.locally_owned_dofs();
+      layout.n_u          = dof_handler.n_dofs();
+      system.layout       = &layout;
+      layout.reinit(system.rhs);
       u.reinit(dof_handler.locally_owned_dofs(), relevant, communicator);
       dealii::DoFTools::map_dofs_to_support_points(mapping, dof_handler, points);
     }
@@ -181,7 +187,9 @@ namespace
     std::vector<std::unique_ptr<Material>> materials;
     std::unique_ptr<SolidAssembler>        assembler;
     std::map<DoFIndex, Point>              points;
-    BlockCsrMatrix                         K;
+    BlockLayout                            layout{};
+    LinearSystem                           system;
+    BlockCsrMatrix                        &K = system.bulk;
     Vector                                 u, internal, external, rhs;
     double                                 time = 1.;
   };
@@ -236,14 +244,35 @@ namespace
     return result;
   }
 
-  void compare_tangent(Model &model, const bool symmetrised = false)
+  /// The part that Loads::add_variation() adds under @p constraints, and its right-hand side, on every rank.
+  FullMatrix<double>
+  variation(Model &model, const dealii::AffineConstraints<double> &constraints, std::vector<double> &rhs)
+  {
+    const DoFIndex     n = model.dof_handler.n_dofs();
+    FullMatrix<double> result(n, n);
+    model.system.variation.clear();
+    model.system.rhs       = 0.;
+    model.system.symmetric = true;
+    model.assembler->add_variation(model.u, constraints, model.system);
+    for (std::size_t k = 0; k < model.system.variation.value.size(); ++k)
+      result(model.system.variation.row[k], model.system.variation.column[k]) += model.system.variation.value[k];
+    dealii::Utilities::MPI::sum(result, communicator, result);
+    rhs.assign(n, 0.);
+    for (const auto i : model.dof_handler.locally_owned_dofs())
+      rhs[i] = model.system.rhs.block(0)(i);
+    dealii::Utilities::MPI::sum(rhs, communicator, rhs);
+    return result;
+  }
+
+  void compare_tangent(Model &model, const bool is_symmetric = true)
   {
     model.set(wavy);
     model.tangent();
-    const auto K        = dense(model);
-    auto       expected = difference_quotient(model);
-    if (symmetrised)
-      expected.symmetrize();
+    auto                K        = dense(model);
+    const auto          expected = difference_quotient(model);
+    std::vector<double> rhs;
+    model.set(wavy);
+    K.add(1., variation(model, model.none, rhs));
     double error = 0., asymmetry = 0.;
     for (unsigned int i = 0; i < K.m(); ++i)
       for (unsigned int j = 0; j < K.m(); ++j)
@@ -251,12 +280,48 @@ namespace
         error     = std::max(error, std::abs(K(i, j) - expected(i, j)));
         asymmetry = std::max(asymmetry, std::abs(K(i, j) - K(j, i)));
       }
-    const std::string size = ", largest row sum " + Numbers::number(K.linfty_norm());
-    check((symmetrised ? "tangent = symmetric part of the difference quotient" : "tangent = difference quotient") +
-              size,
+    check("tangent = difference quotient, largest row sum " + Numbers::number(K.linfty_norm()),
           error / K.linfty_norm(),
           1e-8);
-    check("tangent symmetric", asymmetry / K.linfty_norm(), 1e-13);
+    if (is_symmetric)
+      check("tangent symmetric", asymmetry / K.linfty_norm(), 1e-13);
+    print(std::string("  said to be ") + (model.system.symmetric ? "symmetric" : "unsymmetric"));
+  }
+
+  /// Where a displacement is prescribed, its column goes to the right-hand side, and its row is empty.
+  void compare_prescribed(Model &model)
+  {
+    const double given = 0.01;
+    model.set(wavy);
+    model.tangent();
+    std::vector<double>      rhs;
+    const FullMatrix<double> all     = variation(model, model.none, rhs);
+    DoFIndex                 dof     = 0; // whose column is the largest
+    double                   largest = 0.;
+    for (DoFIndex j = 0; j < all.n(); ++j)
+      for (DoFIndex i = 0; i < all.m(); ++i)
+        if (i != j && std::abs(all(i, j)) > largest)
+        {
+          largest = std::abs(all(i, j));
+          dof     = j;
+        }
+    dealii::AffineConstraints<double> constraints(model.relevant);
+    if (model.relevant.is_element(dof))
+    {
+      constraints.add_line(dof);
+      constraints.set_inhomogeneity(dof, given);
+    }
+    constraints.close();
+    const FullMatrix<double> rest  = variation(model, constraints, rhs);
+    double                   error = 0., left = 0.;
+    for (DoFIndex i = 0; i < all.m(); ++i)
+    {
+      error = std::max(error, std::abs(rhs[i] + (i == dof ? 0. : given * all(i, dof))));
+      for (DoFIndex j = 0; j < all.n(); ++j)
+        left = std::max(left, std::abs(rest(i, j) - (i == dof || j == dof ? 0. : all(i, j))));
+    }
+    check("its prescribed column is on the right-hand side", error / (given * largest), 1e-12);
+    check("its other columns as before, prescribed row and column empty", left / largest, 1e-12);
   }
 
   /// Rotation by 50 degrees about (1, 2, 2)/3.
@@ -334,7 +399,8 @@ namespace
     {
       print(title + "pressure on an open patch");
       Model model(ball(law), degree, {load(Type::pressure, {0}, {}, {"1+x-0.5*y"})});
-      compare_tangent(model, true);
+      compare_tangent(model, false);
+      compare_prescribed(model);
     }
     {
       print(title + "pressure on the face x = 1, its turned and stretched area: resultant, expected");

@@ -3,6 +3,7 @@
 // temporary stays behind; a folder that cannot be made is reported on every rank.
 
 #include "output/vtu.h"
+#include "output/results_folder.h"
 
 #include <deal.II/base/function.h>
 #include <deal.II/base/mpi.h>
@@ -243,6 +244,7 @@ namespace
       top.faces.clear();
     std::vector<BoundaryConditions::Load> none;
     const SolidAssembler                  solid(dof_handler, mapping, materials, none);
+    const ResultsFolder                   held(folder, communicator);
     VtuOutput                             output(folder, bodies, dof_handler, mapping, solid);
     output.write(1, 0.5, u, {top});
     output.write(2, 1.0, u, {top, top});
@@ -299,15 +301,7 @@ int main(int argc, char *argv[])
   unsigned int refused = 0;
   try
   {
-    const Bodies            bodies({cube(0.)}, MPI_COMM_WORLD);
-    dealii::DoFHandler<dim> dof_handler(bodies.triangulation());
-    dof_handler.distribute_dofs(dealii::FESystem<dim>(dealii::FE_Q<dim>(1), dim));
-    std::vector<std::unique_ptr<Material>> materials;
-    materials.push_back(make_material(cube(0.).material));
-    std::vector<BoundaryConditions::Load> none;
-    const dealii::MappingQ1<dim>          mapping;
-    const SolidAssembler                  solid(dof_handler, mapping, materials, none);
-    VtuOutput("vtu_results/file/folder", bodies, dof_handler, mapping, solid);
+    ResultsFolder("vtu_results/file/folder", MPI_COMM_WORLD);
   }
   catch (const InputError &error)
   {

@@ -1,0 +1,53 @@
+#include "output/results_folder.h"
+#include "parallel/throw_everywhere.h"
+#include <nodus/base/types.h>
+
+#include <cerrno>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <sys/file.h>
+#include <system_error>
+#include <unistd.h>
+
+namespace Nodus
+{
+  ResultsFolder::ResultsFolder(const std::string &path, const MPI_Comm communicator)
+  {
+    std::string problem;
+    if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+      problem = take(path);
+    throw_everywhere<InputError>(problem.empty() ? "" : problem + "; choose another with Output/Results folder",
+                                 communicator);
+  }
+
+  ResultsFolder::~ResultsFolder()
+  {
+    if (lock_ >= 0)
+      close(lock_);
+  }
+
+  /// @returns what is in the way.
+  std::string ResultsFolder::take(const std::string &path)
+  {
+    namespace fs = std::filesystem;
+    std::error_code error, ignored;
+    fs::create_directories(path, error);
+    if (!fs::is_directory(path, ignored))
+      return "cannot create the results folder " + path + ": " + error.message();
+
+    // The system lifts the lock when the process ends, however it does. Some file systems cannot lock: go without.
+    lock_ = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+      return "another run is writing to the results folder " + path + ": wait for its end";
+
+    const fs::path probe = fs::path(path) / ".writable";
+    if (!std::ofstream(probe))
+      return "cannot write in the results folder " + path;
+    fs::remove(probe, ignored);
+    for (const auto &entry : fs::directory_iterator(path, ignored))
+      if (entry.path().extension() == ".incomplete")
+        fs::remove(entry.path(), ignored);
+    return "";
+  }
+} // namespace Nodus
