@@ -404,6 +404,8 @@ namespace Nodus
     std::vector<MatrixEntry> entries, prescribed; // of the second, the columns mean nothing
     for (const LoadedCell &loaded : l.loaded_cells)
     {
+      if (!loaded.cell->is_locally_owned()) // those of other ranks that stand here send theirs
+        continue;
       matrix = 0.;
       loaded.cell->get_dof_indices(dofs);
       for (unsigned int i = 0; i < n; ++i)
