@@ -164,11 +164,12 @@ namespace Nodus
     Row row{surfaces};
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
     {
-      const unsigned int p = surfaces.pair(s);
+      const unsigned int p      = surfaces.pair(s);
+      const bool         paired = pairing[s].found || pairing[s].held;
       row.clear();
-      if (pairing[s].found && pairs[p].scheme == ContactPairParameters::Scheme::averaged)
+      if (paired && pairs[p].scheme == ContactPairParameters::Scheme::averaged)
         make_averaged(averaged.row(s), pairing[s], geometry.slave[p].positions(), row);
-      else if (pairing[s].found && (pairing[s].master.found() || geometry.rigid[p] != nullptr))
+      else if (paired && (pairing[s].master.found() || geometry.rigid[p] != nullptr))
         make_pointwise(s, geometry, pairing[s].master, row);
       entries_.insert(entries_.end(), row.slave.begin(), row.slave.end());
       middle_.push_back(entries_.size());

@@ -201,6 +201,7 @@ namespace Nodus
       if (carries_frame)
       {
         set_frame(normal, free_motion(surfaces, s, geometry, pairing, averaged), pairs[p], pairing);
+        pairing.held = paired && !pairing.found;
         continue;
       }
       set_frame(normal, {{true, true, true}}, pairs[p], pairing);

@@ -16,8 +16,9 @@ namespace Nodus
   struct SitePairing
   {
     bool       found = false; ///< a master partner within reach, and a normal motion that the constraints leave free
-    Projection master;        ///< of the site itself; an averaged jump may have a partner without it
-    Vector3    normal;        ///< unit, from slave to master
+    bool       held = false; ///< a master partner, but no normal motion that the constraints leave free: no contact law
+    Projection master;       ///< of the site itself; an averaged jump may have a partner without it
+    Vector3    normal;       ///< unit, from slave to master
     std::array<Vector3, 2> tangent;                      ///< unit, with the normal a right-handed frame
     std::array<bool, 2>    tangent_free{{false, false}}; ///< void directions carry no friction multiplier
     std::array<double, 2>  friction_scale{{1., 1.}};     ///< limit of friction along the tangents over the first one

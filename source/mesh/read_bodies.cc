@@ -16,6 +16,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <new>
 #include <regex>
 #include <sstream>
 #include <tuple>
@@ -136,6 +137,10 @@ namespace Nodus
                          " failed; use the name and the arguments, separated by ':', of a function of "
                          "deal.II's GridGenerator for three dimensions. deal.II says: " +
                          text);
+      }
+      catch (const std::bad_alloc &)
+      {
+        throw InputError(call + " makes a mesh that does not fit into memory; ask for fewer cells");
       }
       if (!mesh->all_reference_cells_are_hyper_cube())
         throw InputError(call + " makes cells that are no hexahedra; use another generator");

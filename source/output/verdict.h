@@ -20,6 +20,8 @@ namespace Nodus
     contact_laws, ///< eq. N4
     statuses,     ///< that are contradicted, relative to the largest pressure or to the cone (eq. S2)
     thresholds,   ///< of friction, from those of the pressure, relative to the largest one (eq. L2)
+    held_depth,   ///< of sites where prescribed displacements hold both sides across the surface [mean face]
+    held_slip,    ///< of closed sites with friction where they hold both sides along it [mean face]
     penetration,  ///< of the surfaces of a pair, either way [mean face]
     passed        ///< nodes that have gone through the other surface
   };
@@ -33,6 +35,8 @@ namespace Nodus
                                                                    "contact laws",
                                                                    "contradicted statuses",
                                                                    "thresholds",
+                                                                   "prescribed penetration",
+                                                                   "prescribed slip",
                                                                    "penetration depth",
                                                                    "nodes passed through"}};
 

@@ -1,6 +1,7 @@
 #include "parameters/generators.h"
 #include "base/suggestion.h"
 
+#include <deal.II/base/numbers.h>
 #include <deal.II/base/utilities.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/tria.h>
@@ -337,6 +338,14 @@ namespace Nodus
       if (count == std::end(counts) || find(name) == nullptr || !mistake_in_arguments(name, arguments).empty())
         return 1.;
       double n = 1.;
+      if (name == "cylinder_shell") // 0: as many as make cells even
+      {
+        const double length = dealii::Utilities::string_to_double(given[0]),
+                     inner  = dealii::Utilities::string_to_double(given[1]),
+                     outer  = dealii::Utilities::string_to_double(given[2]);
+        n *= given[3] == "0" ? std::max(1., dealii::numbers::PI * (inner + outer) / (outer - inner)) : 1.;
+        n *= given[4] == "0" ? std::max(1., length / (outer - inner)) : 1.;
+      }
       for (const unsigned int i : count->arguments)
       {
         const Kind kind    = find(name)->arguments[i].kind;
@@ -394,6 +403,8 @@ namespace Nodus
                 dealii::Utilities::string_to_double(given[order.larger]))
           wrong = "has " + given[order.smaller] + " for " + expected[order.smaller].meaning + " of " + name +
                   ", which must be smaller than the " + given[order.larger] + " for " + expected[order.larger].meaning;
+      if (wrong.empty() && name == "concentric_hyper_shells" && given[5] != "0" && given[5] != "6" && given[5] != "12")
+        wrong = "has " + given[5] + " cells of a layer, which must be 0, 6 or 12"; // deal.II crashes
       if (wrong.empty() && name == "subdivided_hyper_rectangle" && given[0].find(';') != std::string::npos)
         wrong = mistake_in_widths(given);
       if (!wrong.empty())

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <numeric>
@@ -14,6 +15,9 @@ namespace Nodus
 {
   namespace
   {
+    /// p4est numbers the vertices of a coarse cell up to one level more.
+    constexpr unsigned int deepest_level = 17;
+
     using ParameterChecks::check;
     using ParameterChecks::check_expression;
     using ParameterChecks::is_given;
@@ -178,6 +182,10 @@ namespace Nodus
       section.require((body.local_refinement > 0) == !body.refine_where.empty(),
                       "Refine where",
                       "and Local refinement go together; give both or none");
+      section.require(std::uint64_t(body.global_refinement) + body.local_refinement <= deepest_level,
+                      body.local_refinement > 0 ? "Local refinement" : "Global refinement",
+                      "goes deeper than the " + std::to_string(deepest_level) +
+                          " levels that a mesh can have; refine less, or begin with more cells");
       if (!body.refine_where.empty())
         check_expression(section, "Refine where", body.refine_where, "x,y,z");
       if (!body.rigid)

@@ -21,7 +21,7 @@ namespace Nodus
   {
     namespace fs = std::filesystem;
 
-    constexpr unsigned int format          = 11;
+    constexpr unsigned int format          = 12;
     constexpr auto         format_line     = "nodus checkpoint ";
     constexpr auto         last_line       = "end";
     constexpr auto         unfinished_mark = ".incomplete";
@@ -53,8 +53,12 @@ namespace Nodus
       return file ? synchronize(path) : "cannot write " + path.string() + ": is the folder writable, is the disk full?";
     }
 
+    /// Nothing where it is no file.
     std::vector<char> read_file(const fs::path &path)
     {
+      std::error_code unknown;
+      if (!fs::is_regular_file(path, unknown))
+        return {};
       std::ifstream file(path, std::ios::binary);
       return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     }
@@ -78,22 +82,26 @@ namespace Nodus
                          "', this one reads '" + format_line + std::to_string(format) +
                          "'): continue with that version, or begin without --restart");
       pieces.clear();
+      bool has_common = false;
       while (std::getline(index, line) && line != last_line)
       {
         std::istringstream entry(line);
         std::string        name;
         std::size_t        bytes = 0;
         unsigned int       crc   = 0;
-        entry >> name >> bytes >> crc;
+        if (!(entry >> name >> bytes >> crc) || name.find('/') != std::string::npos)
+          return "its index has the line '" + line + "', which names no file";
         const std::vector<char> content = read_file(checkpoint / name);
         if (content.size() != bytes)
           return name + " has " + std::to_string(content.size()) + " bytes instead of " + std::to_string(bytes);
         if (checksum(content) != crc)
           return name + " has been changed";
-        if (name != "common")
+        if (name == "common")
+          has_common = true;
+        else
           pieces.push_back(checkpoint / name);
       }
-      return line == last_line && !pieces.empty() ? "" : "its index is not complete";
+      return line == last_line && has_common && !pieces.empty() ? "" : "its index is not complete";
     }
 
     /// Increments that there are folders of, the newest first.
@@ -216,8 +224,9 @@ namespace Nodus
 
   std::optional<Checkpoints::Found> Checkpoints::find()
   {
-    std::string  problem, remark;
-    unsigned int chosen = dealii::numbers::invalid_unsigned_int;
+    std::string              problem, remark;
+    unsigned int             chosen = dealii::numbers::invalid_unsigned_int;
+    std::vector<std::string> names; // of the pieces that its index has
     if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
       try
       {
@@ -229,6 +238,8 @@ namespace Nodus
           if (what.empty())
           {
             chosen = increment;
+            for (const fs::path &piece : pieces)
+              names.push_back(piece.filename().string());
             break;
           }
           remark += (remark.empty() ? "" : "; ") + (folder_ / name_of(increment)).string() + " is damaged: " + what;
@@ -247,9 +258,8 @@ namespace Nodus
 
     const fs::path checkpoint = folder_ / name_of(chosen);
     Found          found{chosen, read_file(checkpoint / "common"), {}, remark};
-    for (const auto &entry : fs::directory_iterator(checkpoint))
-      if (entry.path().filename().string().compare(0, 6, "piece.") == 0)
-        found.pieces.push_back(entry.path());
+    for (const std::string &name : dealii::Utilities::MPI::broadcast(communicator_, names))
+      found.pieces.push_back(checkpoint / name);
     kept_.assign(1, chosen);
     return found;
   }

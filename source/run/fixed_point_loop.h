@@ -30,10 +30,6 @@ namespace Nodus
     {
       return counter_;
     }
-    double value() const
-    {
-      return value_;
-    }
 
   private:
     std::string  name_;

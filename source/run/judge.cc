@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace Nodus
@@ -24,6 +25,8 @@ namespace Nodus
     constexpr double status_tolerance = 1e-3;
     /// Of the mean face of the side with the larger ones.
     constexpr double tolerated_depth = 0.25;
+    /// Of that, where displacements of both sides are prescribed: facets of curved surfaces overlap a little.
+    constexpr double tolerated_held_depth = 1e-2, tolerated_held_slip = 1e-6;
 
     /// Whether the numbers of a State on this rank are finite.
     struct Finite
@@ -111,6 +114,7 @@ namespace Nodus
     measure_contact(verdict);
     measure_pairs(verdict);
     measure_forces(verdict);
+    measure_held(verdict);
     measure_intrusion(verdict);
     return verdict;
   }
@@ -332,6 +336,46 @@ namespace Nodus
           worst.add((sums[n * b + c] - bodies.load(b)[c]) / ((c < dim ? 1. : bodies.extent(b)) * largest));
     }
     return worst.on_all_ranks(model_.communicator);
+  }
+
+  /// Where displacements of both sides are prescribed no multiplier can act: neither pressure nor friction is found
+  /// there, which is right as long as the sides do not meet, or do not slide.
+  void Judge::measure_held(Verdict &verdict) const
+  {
+    const ContactSurfaces &surfaces = contact_->surfaces();
+    Status::Violation      depth, slip; // their counts are not used
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+    {
+      const SitePairing &pairing = contact_->pairing()[s];
+      const unsigned int p       = surfaces.pair(s);
+      if (!surfaces.is_owned(s) || !surfaces.has_status(s) ||
+          model_.parameters.contact_pairs[p].contact_law == ContactPairParameters::ContactLaw::tied)
+        continue;
+      const auto raise = [&](Status::Violation &violation, const double length)
+      {
+        if (length / face_[p] > violation.value)
+        {
+          violation.value = length / face_[p];
+          violation.site  = s;
+        }
+      };
+      if (pairing.held)
+        raise(depth, contact_->distance(s)); // > 0: inside
+      else if (pairing.found && contact_->status().contact(s) && contact_->status().friction(s))
+        for (unsigned int i = 0; i < 2; ++i)
+          if (!pairing.tangent_free[i])
+            raise(slip,
+                  std::abs(pairing.tangent[i] * contact_->jump().jump_of_increment(s, contact_->state().increment)));
+    }
+    for (const auto &[measure, violation, tolerance] :
+         {std::make_tuple(Measure::held_depth, &depth, tolerated_held_depth),
+          std::make_tuple(Measure::held_slip, &slip, tolerated_held_slip)})
+    {
+      const auto largest = dealii::Utilities::MPI::min_max_avg(violation->value, model_.communicator);
+      if (largest.max_index != dealii::Utilities::MPI::this_mpi_process(model_.communicator))
+        violation->site = dealii::numbers::invalid_unsigned_int;
+      verdict[measure] = {largest.max, tolerance, contact_->locus(violation->site)};
+    }
   }
 
   void Judge::measure_intrusion(Verdict &verdict)

@@ -35,6 +35,7 @@ namespace Nodus
     void             measure_forces(Verdict &verdict);
     Verdict::Finding measure_bodies(const Vector &missing, const Vector &acting, double scale) const;
     double           measure_rigid_bodies(const Vector &forces, double scale) const;
+    void             measure_held(Verdict &verdict) const;
     void             measure_intrusion(Verdict &verdict);
 
     const Model                      &model_;

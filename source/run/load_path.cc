@@ -83,8 +83,9 @@ namespace Nodus
       reason << "geometry pass " << pass.geometry << ", threshold pass " << pass.threshold << ", status pass "
              << pass.status << ": " << failure.what();
       journal.diagnosis.end_attempt(failure.what());
-      const bool  may_shrink = !parts_.strategy.begins_singular();
-      const bool  again      = may_shrink && path.cut_back();
+      const bool may_shrink =
+          !parts_.strategy.begins_singular() && failure.kind() != SolverFailure::Kind::prescribed_contact;
+      const bool  again = may_shrink && path.cut_back();
       std::string hint;
       if (!again)
         hint = report_failure(
@@ -104,6 +105,15 @@ namespace Nodus
     Journal       &journal = parts_.journal;
     const auto     timer   = journal.profile.time(Phase::judgement);
     const Verdict &verdict = journal.verdict = judge_.judge();
+    if (const Measure worst = verdict.worst();
+        !verdict.holds() && (worst == Measure::held_depth || worst == Measure::held_slip))
+      throw SolverFailure(
+          "displacements of both sides of the contact are prescribed, so that no pressure and no friction "
+          "can be found there: " +
+              verdict.text(worst) +
+              "; leave the displacements of one side free there, for example by prescribing them on "
+              "another face of that body",
+          SolverFailure::Kind::prescribed_contact);
     if (!verdict.holds())
       throw SolverFailure("the loops have converged, but the state does not hold where it is measured anew: " +
                               verdict.text(verdict.worst()),
@@ -268,7 +278,7 @@ namespace Nodus
             << ". The last converged state is t = " << path.time()
             << (path.increment() > 1 ? "" : " (no increment converged)");
     if (!may_shrink)
-      message << ". Smaller increments begin with the same system, so the increment was not cut back";
+      message << ". Smaller increments do not change that, so the increment was not cut back";
     else if (!parts_.model.parameters.load_stepping.cut_back)
       message << ". Give more Increments, or set 'Load stepping/Cut back = true'";
     else

@@ -104,7 +104,7 @@ int main(int argc, char **argv)
           "body 2 (upper) moves along (0 1 0)",
           "body 2 (upper) turns about (0 0 1)",
           "9 of 9 sites are closed, 9 of these slip",
-          "not cut back, since smaller increments begin with the same system",
+          "not cut back, since smaller increments do not change that",
           "subsection Boundary condition 3\n",
           "  set Components   = x, y\n",
           "--set \"Load stepping/Viscous stabilisation=0.01\" --set \"Load stepping/Increments=4\"\n",

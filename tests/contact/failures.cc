@@ -60,7 +60,7 @@ int main(int argc, char **argv)
                "no increment converged",
                "diagnosis.md",
                "contact is closed, but has no friction",
-               "Smaller increments begin with the same system"});
+               "Smaller increments do not change that"});
   check("  and no smaller increments are tried nor advised",
         !says(sliding_lines.str(), "halved") && !says(sliding, "Minimum increment") &&
             !says(sliding, "Initial status"));
@@ -79,7 +79,7 @@ int main(int argc, char **argv)
   const std::string  falling = outcome(above, above_lines);
   check_words("a block above the other one may start closed",
               falling,
-              {"close the contact first ('Initial status = closed')", "Smaller increments begin"});
+              {"close the contact first ('Initial status = closed')", "Smaller increments do not change that"});
   check("  and has one attempt", !says(above_lines.str(), "again with") && !says(falling, "would still leave"));
   above.contact_pairs[0].start.status = ContactPairParameters::InitialStatus::closed;
   check("  and then does not fail", outcome(above) == "no failure");
@@ -136,6 +136,31 @@ int main(int argc, char **argv)
   check_words("a block that the other one goes through in small increments",
               outcome(crushed),
               {"does not hold where it is measured anew", "penetration depth", "of Contact pair 1 ('pair')"});
+
+  auto held                                  = p;
+  held.boundary_conditions                   = {hold("bottom", region(1, {z_minus}), {0, 1, 2}),
+                                                hold("contact below", region(1, {z_plus}), {0, 1}),
+                                                condition("contact above",
+                                        BoundaryConditionParameters::Type::displacement,
+                                        region(2, {z_minus}),
+                                        {0, 1},
+                                        {"0.1*t", "0"}),
+                                                condition("top",
+                                        BoundaryConditionParameters::Type::displacement,
+                                        region(2, {z_plus}),
+                                        {0, 1, 2},
+                                        {"0.1*t", "0", "-0.02"})};
+  held.contact_pairs[0].friction_coefficient = 0.3;
+  check_words("friction where displacements of both sides are prescribed",
+              outcome(held),
+              {"prescribed slip", "slave node (", "leave the displacements of one side free", "not cut back"});
+  held.boundary_conditions[1].components = {0, 1, 2};
+  held.boundary_conditions[1].value      = {"0", "0", "0"};
+  held.boundary_conditions[2].components = {0, 1, 2};
+  held.boundary_conditions[2].value      = {"0.1*t", "0", "-0.02*t"};
+  check_words("pressure where displacements of both sides are prescribed",
+              outcome(held),
+              {"prescribed penetration", "slave node ("});
 
   auto apart                             = p;
   apart.bodies[1]                        = box("upper", "2,2,1", {0.1, 0.1, 1.5}, {0.9, 0.9, 2.5}, 100, 0.3);

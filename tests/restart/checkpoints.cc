@@ -167,6 +167,20 @@ int main(int argc, char **argv)
   expect("a changed one is passed over", restart(p), {"increment 5"});
 
   put(kept, checkpoints);
+  fs::remove(piece);
+  fs::create_directory(piece);
+  expect("one with a folder for a file is passed over", restart(p), {"increment 5"});
+
+  put(kept, checkpoints);
+  std::ofstream(checkpoints / "000006" / "index", std::ios::app) << '\n';
+  std::ofstream(checkpoints / "000006" / "piece.0001") << "garbage\n";
+  expect("what its index does not name does not count", restart(p), {"increment 7"});
+
+  put(kept, checkpoints);
+  set_first_line(checkpoints / "000006" / "index", "nodus checkpoint 12\n");
+  expect("an index with an empty line is passed over", restart(p), {"increment 5"});
+
+  put(kept, checkpoints);
   fs::rename(checkpoints / "000006", checkpoints / "000006.incomplete");
   expect("an unfinished one does not count", restart(p), {"increment 5"});
 

@@ -65,8 +65,9 @@ namespace Nodus
       linear_solver,   ///< the solution of a linear system did not succeed
       status_cycle,
       geometry_cycle,
-      loop_limit, ///< not converged in the passes that a loop may take
-      judged      ///< what the loops found does not hold where it is measured anew
+      loop_limit,        ///< not converged in the passes that a loop may take
+      judged,            ///< what the loops found does not hold where it is measured anew
+      prescribed_contact ///< likewise, because displacements of both sides are prescribed: no smaller increment helps
     };
 
     explicit SolverFailure(const std::string &message, const Kind kind = Kind::unspecified)

@@ -334,7 +334,7 @@ namespace Nodus
     out << "# Why the run stopped\n\n"
         << (parameters_.title.empty() ? "" : parameters_.title + ". ") << "Increment " << history_.increment
         << ", from t = " << history_.begin << " to t = " << history_.end
-        << (!evidence.may_shrink ? ", not cut back, since smaller increments begin with the same system: "
+        << (!evidence.may_shrink                 ? ", not cut back, since smaller increments do not change that: "
             : parameters_.load_stepping.cut_back ? ", cut back as far as it may be: "
                                                  : ", not to be cut back: ")
         << evidence.message << ".\n\nThe last converged state is t = " << evidence.converged << '.'

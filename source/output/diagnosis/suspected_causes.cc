@@ -298,6 +298,11 @@ namespace Nodus
       chattering = chattering || history.iterations[i].norms.changes > 0;
 
     // What the failure says itself, then what explains a failure of that kind, then the iteration as such.
+    if (kind == Kind::prescribed_contact)
+      causes.push_back(
+          {"displacements of both sides of the contact are prescribed",
+           {evidence.message},
+           {{"Boundary condition N/Boundary ids", "", "another face", "one side of the contact must be free"}}});
     if (kind == Kind::over_constraint)
       add_over_constraint(parameters, evidence, causes);
     if (kind == Kind::free_body || (!evidence.free_motions.empty() && !in_a_loop && !statuses))
