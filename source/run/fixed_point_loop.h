@@ -30,6 +30,10 @@ namespace Nodus
     {
       return counter_;
     }
+    double value() const
+    {
+      return value_;
+    }
 
   private:
     std::string  name_;

@@ -14,9 +14,12 @@ namespace Nodus
     constexpr unsigned int patience = 8;
     /// Of a Newton step into inverted cells.
     constexpr unsigned int maximum_halvings = 5;
-    /// Passes of the threshold loop whose change is more than this fraction of the one before are mixed with those
-    /// before them.
-    constexpr double threshold_contraction = 0.7;
+    /// Passes whose change is more than this fraction of the one before are mixed with those before them; those of the
+    /// geometry from the fourth on.
+    constexpr double       geometry_contraction = 0.3, threshold_contraction = 0.7;
+    constexpr unsigned int plain_geometry_passes = 3;
+    /// Of the translation of a rigid body among the displacements that are mixed.
+    constexpr double rigid_weight = 1e-6;
     /// Times that a geometry loop may come back to the pass before the last.
     constexpr unsigned int tolerated_geometry_cycles = 2;
     /// Sites whose statuses cycle may contradict them by this much, of the largest pressure or of the cone.
@@ -46,6 +49,7 @@ namespace Nodus
     const Newton newton(model_.parameters.newton, patience, uses(Remedy::shorter_step) ? maximum_halvings : 0);
 
     FixedPointLoop geometry("geometry", model_.parameters.geometry_loop);
+    AndersonMixing mixing(model_.communicator);
     geometry_cycles_ = 0;
     do
     {
@@ -69,7 +73,7 @@ namespace Nodus
           iterate(newton);
         } while (!statuses_converged(statuses));
       } while (!threshold_converged(threshold, threshold_mixing));
-    } while (!geometry_converged(geometry));
+    } while (!geometry_converged(geometry, mixing));
     if (!merged.status)
       check_frozen_statuses();
   }
@@ -102,6 +106,7 @@ namespace Nodus
   {
     paired_before_ = paired_;
     paired_        = states_.now.unknowns.block(0);
+    rigid_paired_  = states_.now.rigid;
     corrections_   = 0;
     equilibrium_.pair();
   }
@@ -186,15 +191,15 @@ namespace Nodus
     return false;
   }
 
-  /// Eq. L1.
-  bool IncrementLoops::geometry_converged(FixedPointLoop &loop)
+  /// Eqs. L1 and L3.
+  bool IncrementLoops::geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing)
   {
     ++journal_.counts.geometry;
     if (equilibrium_.merged().geometry || model_.parameters.geometry_loop.mode == LoopParameters::Mode::once)
       return true;
     const auto             timer    = journal_.profile.time(Phase::pairing);
     const ContactSurfaces &surfaces = model_.contact->surfaces();
-    const Vector          &u        = states_.now.unknowns.block(0);
+    Vector                &u        = states_.now.unknowns.block(0);
     std::string            worst;
     const double           change = largest_difference(surfaces, u, paired_, &worst);
     // what the solution of the pass before leaves out of balance with the geometry that it leads to
@@ -208,7 +213,8 @@ namespace Nodus
       text << "geometry: renewed, the last pass left " << renewed_ << " out of balance; it changes most at " << worst;
     journal_.console.remark(text.str());
     note_pass(loop, value, worst);
-    const bool last = loop.counter() + 1 >= model_.parameters.geometry_loop.maximum_passes;
+    const double before = loop.value();
+    const bool   last   = loop.counter() + 1 >= model_.parameters.geometry_loop.maximum_passes;
     if (last && value > loop.tolerance() && value <= tolerated_rest(loop.tolerance()))
     {
       journal_.console.remark("warning: the geometry loop ends with forces and contact laws off by " +
@@ -227,7 +233,51 @@ namespace Nodus
               ": a slave node crosses an edge of the faceted master and back; try 'Normal = averaged' or "
               "smaller increments",
           SolverFailure::Kind::geometry_cycle);
+    mixing.add(geometry_values(paired_, rigid_paired_), geometry_values(u, states_.now.rigid));
+    if (loop.counter() >= plain_geometry_passes && value > geometry_contraction * before &&
+        uses(Remedy::mixed_geometry))
+    {
+      journal_.console.remark("the geometry loop is slow: the next pass starts where the last ones lead to");
+      journal_.count(Remedy::mixed_geometry);
+      start_from_mixed(mixing);
+    }
     return false;
+  }
+
+  /// What a pass of the geometry loop changes: displacements, and the motions of the driven rigid bodies. The latter
+  /// weigh next to nothing, for the displacements of the bodies' nodes stand for them.
+  std::vector<double> IncrementLoops::geometry_values(const Vector                          &u,
+                                                      const std::vector<RigidBodies::State> &rigid) const
+  {
+    std::vector<double> values;
+    for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
+      values.push_back(u(i));
+    for (const RigidBodies::State &body : rigid)
+      for (unsigned int d = 0; d < dim; ++d)
+      {
+        values.push_back(rigid_weight * body.translation[d]);
+        values.push_back(model_.length_scale * body.turn[d]);
+      }
+    return values;
+  }
+
+  /// The next geometry pass starts where the last ones lead to, rigid bodies too.
+  void IncrementLoops::start_from_mixed(const AndersonMixing &mixing)
+  {
+    const std::vector<double> values = mixing.mixed();
+    auto                      value  = values.begin();
+    Vector                   &u      = states_.now.unknowns.block(0);
+    for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
+      u(i) = *value++;
+    u.compress(dealii::VectorOperation::insert);
+    for (RigidBodies::State &body : states_.now.rigid)
+      for (unsigned int d = 0; d < dim; ++d)
+      {
+        body.translation[d] = *value++ / rigid_weight;
+        body.turn[d]        = *value++ / model_.length_scale;
+      }
+    model_.rigid_bodies.move(u);
+    model_.contact->gather(states_.now.unknowns, states_.committed.unknowns.block(0));
   }
 
   bool IncrementLoops::uses(const Remedy remedy) const

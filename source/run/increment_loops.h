@@ -26,24 +26,27 @@ namespace Nodus
     void solve();
 
   private:
-    void pair();
-    void iterate(const Newton &newton);
-    bool geometry_converged(FixedPointLoop &loop);
-    bool threshold_converged(FixedPointLoop &loop, AndersonMixing &mixing);
-    bool statuses_converged(FixedPointLoop &loop);
-    void check_frozen_statuses();
-    bool uses(Remedy remedy) const;
-    void note_pass(const FixedPointLoop &loop, double value, const std::string &worst);
+    void                pair();
+    void                iterate(const Newton &newton);
+    bool                geometry_converged(FixedPointLoop &loop, AndersonMixing &mixing);
+    bool                threshold_converged(FixedPointLoop &loop, AndersonMixing &mixing);
+    bool                statuses_converged(FixedPointLoop &loop);
+    void                check_frozen_statuses();
+    void                start_from_mixed(const AndersonMixing &mixing);
+    bool                uses(Remedy remedy) const;
+    std::vector<double> geometry_values(const Vector &u, const std::vector<RigidBodies::State> &rigid) const;
+    void                note_pass(const FixedPointLoop &loop, double value, const std::string &worst);
 
-    Model                &model_;
-    Journal              &journal_;
-    States               &states_;
-    Equilibrium          &equilibrium_;
-    std::function<void()> heed_signals_;
-    Vector                paired_, paired_before_; ///< displacements of this and the previous pairing
-    unsigned int          geometry_cycles_ = 0;    ///< with period 2, in the geometry loop at hand
-    double                renewed_         = 0.;   ///< norm that this pass of the geometry loop began with
-    unsigned int          corrections_     = 0;    ///< of Newton, in this pass
+    Model                          &model_;
+    Journal                        &journal_;
+    States                         &states_;
+    Equilibrium                    &equilibrium_;
+    std::function<void()>           heed_signals_;
+    Vector                          paired_, paired_before_; ///< displacements of this and the previous pairing
+    std::vector<RigidBodies::State> rigid_paired_;           ///< at this pairing
+    unsigned int                    geometry_cycles_ = 0;    ///< with period 2, in the geometry loop at hand
+    double                          renewed_         = 0.;   ///< norm that this pass of the geometry loop began with
+    unsigned int                    corrections_     = 0;    ///< of Newton, in this pass
   };
 } // namespace Nodus
 

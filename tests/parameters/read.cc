@@ -194,7 +194,7 @@ namespace
     print("maximum iterations", parameters.linear_solver.maximum_iterations);
     print("augmentation factor", parameters.linear_solver.augmentation_factor);
     print("\nwithout", parameters.strategy.without);
-    print("uses mixed thresholds", parameters.strategy.uses(Remedy::mixed_thresholds));
+    print("uses mixed geometry", parameters.strategy.uses(Remedy::mixed_geometry));
     print("uses three loops", parameters.strategy.uses(Remedy::three_loops));
     print("interval ends", parameters.load_stepping.interval_ends);
     print("increments", parameters.load_stepping.increments);

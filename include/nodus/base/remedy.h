@@ -12,6 +12,7 @@ namespace Nodus
   {
     three_loops,
     coupled_threshold,
+    mixed_geometry,
     mixed_thresholds,
     regularised_law,
     frozen_statuses,
@@ -20,8 +21,9 @@ namespace Nodus
     direct_solver
   };
 
-  constexpr std::array<const char *, 8> remedy_names = {{"three loops",
+  constexpr std::array<const char *, 9> remedy_names = {{"three loops",
                                                          "coupled threshold",
+                                                         "mixed geometry",
                                                          "mixed thresholds",
                                                          "regularised law",
                                                          "frozen statuses",
