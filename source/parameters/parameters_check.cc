@@ -15,7 +15,7 @@ namespace Nodus
 {
   namespace
   {
-    /// p4est numbers the vertices of a coarse cell up to one level more.
+    /// deal.II ends with an exception of its own where p4est can go no deeper; with this many levels it still works.
     constexpr unsigned int deepest_level = 17;
 
     using ParameterChecks::check;
