@@ -1,5 +1,6 @@
 #include "bulk/loads.h"
 #include "bulk/face_table.h"
+#include "bulk/follower_pressure.h"
 #include "parallel/owned_values.h"
 #include "parallel/ownership.h"
 #include "parallel/throw_everywhere.h"
@@ -8,7 +9,6 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -24,21 +24,12 @@ namespace Nodus
     using Type         = BoundaryConditionParameters::Type;
     using CellIterator = DoFHandler<dim>::active_cell_iterator;
 
-    /// Quadrature point of a loaded face.
-    struct FacePoint
-    {
-      Point   X;
-      Vector3 tangent[2]; ///< dX/d(unit coordinate), their cross product points out of the body
-      double  weight;     ///< on the unit face
-      double  area;       ///< weight times reference area
-    };
-
     struct LoadedFace
     {
-      Load                  *load;
-      unsigned int           face;
-      std::vector<FacePoint> points;
-      std::vector<double>    values; ///< of the load at its current time: [point][component]
+      Load                    *load;
+      unsigned int             face;
+      std::vector<LoadedPoint> points;
+      std::vector<double>      values; ///< of the load at its current time: [point][component]
     };
 
     struct LoadedCell
@@ -81,17 +72,13 @@ namespace Nodus
         faces.emplace_back(dof_handler.get_fe().base_element(0), face);
     }
 
-    void                   add_cell(const CellIterator &cell);
-    void                   evaluate(double t);
-    double                 value(const Load &load, const Point &X, unsigned int entry);
-    void                   evaluate_dead_loads(LoadedCell &loaded);
-    std::array<Vector3, 2> tangents(const LoadedFace &loaded, unsigned int q, const std::vector<double> &u) const;
-    void add_cross(unsigned int a, unsigned int b, const Vector3 &w, FullMatrix<double> &matrix) const;
-    void add_pressure(const LoadedFace &loaded, const Cell &cell) const;
-    void
-    add_pressure_variation(const LoadedFace &loaded, const std::vector<double> &u, FullMatrix<double> &matrix) const;
-    bool follows(const LoadedCell &cell, const LoadedFace &face) const;
-    void add_springs(const LoadedFace &loaded, const Cell &cell) const;
+    void             add_cell(const CellIterator &cell);
+    void             evaluate(double t);
+    double           value(const Load &load, const Point &X, unsigned int entry);
+    void             evaluate_dead_loads(LoadedCell &loaded);
+    bool             follows(const LoadedCell &cell, const LoadedFace &face) const;
+    FollowerPressure follower(const LoadedFace &loaded) const;
+    void             add_springs(const LoadedFace &loaded, const Cell &cell) const;
 
     unsigned int dof(const unsigned int node, const unsigned int component) const
     {
@@ -140,7 +127,7 @@ namespace Nodus
           loaded.face = face;
           for (const auto q : values.quadrature_point_indices())
           {
-            FacePoint point;
+            LoadedPoint point;
             point.X = values.quadrature_point(q);
             for (unsigned int s = 0; s < 2; ++s)
               for (unsigned int i = 0; i < dim; ++i)
@@ -228,82 +215,6 @@ namespace Nodus
     }
   }
 
-  /// Current tangents t_0, t_1 at a quadrature point.
-  std::array<Vector3, 2>
-  Loads::Implementation::tangents(const LoadedFace &loaded, const unsigned int q, const std::vector<double> &u) const
-  {
-    const FaceTable       &table = faces[loaded.face];
-    std::array<Vector3, 2> t     = {{loaded.points[q].tangent[0], loaded.points[q].tangent[1]}};
-    for (unsigned int a = 0; a < table.nodes.size(); ++a)
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int s = 0; s < 2; ++s)
-          t[s][i] += u[dof(table.nodes[a], i)] * table.gradient[s][q][a];
-    return t;
-  }
-
-  /// Adds the matrix of -w x du_b to the rows of node @p a.
-  void Loads::Implementation::add_cross(const unsigned int  a,
-                                        const unsigned int  b,
-                                        const Vector3      &w,
-                                        FullMatrix<double> &matrix) const
-  {
-    for (unsigned int i = 0; i < dim; ++i)
-    {
-      const unsigned int k = (i + 1) % dim, m = (i + 2) % dim;
-      matrix(dof(a, i), dof(b, k)) += w[m];
-      matrix(dof(a, i), dof(b, m)) -= w[k];
-    }
-  }
-
-  /// Follower pressure (eq. B3): f_a = - int p N_a (t_0 x t_1) with the current tangents t. Its derivative is
-  /// int p N_a v_b x du_b, v_b = N_b,0 t_1 - N_b,1 t_0, of which this adds the symmetric half.
-  void Loads::Implementation::add_pressure(const LoadedFace &loaded, const Cell &cell) const
-  {
-    const FaceTable     &table = faces[loaded.face];
-    const unsigned int   n     = table.nodes.size();
-    std::vector<Vector3> v(n);
-    for (unsigned int q = 0; q < loaded.points.size(); ++q)
-    {
-      const auto    t     = tangents(loaded, q, cell.u);
-      const double  p     = loaded.values[q] * loaded.points[q].weight;
-      const Vector3 force = -p * cross_product_3d(t[0], t[1]);
-      for (unsigned int a = 0; a < n; ++a)
-        for (unsigned int i = 0; i < dim; ++i)
-          cell.external(dof(table.nodes[a], i)) += table.value[q][a] * force[i];
-      if (!cell.tangent)
-        continue;
-      for (unsigned int a = 0; a < n; ++a)
-        v[a] = table.gradient[0][q][a] * t[1] - table.gradient[1][q][a] * t[0];
-      for (unsigned int a = 0; a < n; ++a)
-        for (unsigned int b = 0; b < n; ++b)
-          add_cross(table.nodes[a],
-                    table.nodes[b],
-                    p / 2. * (table.value[q][a] * v[b] - table.value[q][b] * v[a]),
-                    *cell.tangent);
-    }
-  }
-
-  /// The other half, an integral along the edge of the face.
-  void Loads::Implementation::add_pressure_variation(const LoadedFace          &loaded,
-                                                     const std::vector<double> &u,
-                                                     FullMatrix<double>        &matrix) const
-  {
-    const FaceTable     &table = faces[loaded.face];
-    const unsigned int   n     = table.nodes.size();
-    std::vector<Vector3> v(n);
-    for (unsigned int q = 0; q < loaded.points.size(); ++q)
-    {
-      const auto   t = tangents(loaded, q, u);
-      const double p = loaded.values[q] * loaded.points[q].weight;
-      for (unsigned int a = 0; a < n; ++a)
-        v[a] = table.gradient[0][q][a] * t[1] - table.gradient[1][q][a] * t[0];
-      for (unsigned int a = 0; a < n; ++a)
-        for (unsigned int b = 0; b < n; ++b)
-          add_cross(
-              table.nodes[a], table.nodes[b], p / 2. * (table.value[q][a] * v[b] + table.value[q][b] * v[a]), matrix);
-    }
-  }
-
   void Loads::Implementation::add_springs(const LoadedFace &loaded, const Cell &cell) const
   {
     const FaceTable &table      = faces[loaded.face];
@@ -331,6 +242,11 @@ namespace Nodus
   bool Loads::Implementation::follows(const LoadedCell &cell, const LoadedFace &face) const
   {
     return face.load->parameters->type == Type::pressure && !material(cell.cell).small_strain();
+  }
+
+  FollowerPressure Loads::Implementation::follower(const LoadedFace &loaded) const
+  {
+    return {dof_handler.get_fe(), faces[loaded.face], loaded.points, loaded.values};
   }
 
   double Loads::spring_energy(const unsigned int number, const std::vector<double> &u) const
@@ -388,7 +304,7 @@ namespace Nodus
       if (face.load->parameters->type == Type::spring)
         implementation_->add_springs(face, cell);
       else if (implementation_->follows(loaded, face))
-        implementation_->add_pressure(face, cell);
+        implementation_->follower(face).add(cell.u, cell.external, cell.tangent);
   }
 
   void Loads::add_variation(const Vector &u, const AffineConstraints<double> &constraints, LinearSystem &system) const
@@ -412,7 +328,7 @@ namespace Nodus
         at_cell[i] = u(dofs[i]);
       for (const LoadedFace &face : loaded.faces)
         if (l.follows(loaded, face))
-          l.add_pressure_variation(face, at_cell, matrix);
+          l.follower(face).add_unsymmetric(at_cell, matrix);
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j < n; ++j)
           if (matrix(i, j) != 0.)

@@ -1,5 +1,6 @@
 #include "parameters/generators.h"
 #include "base/suggestion.h"
+#include "parameters/argument_kind.h"
 
 #include <deal.II/base/numbers.h>
 #include <deal.II/base/utilities.h>
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <regex>
 #include <sstream>
 
 namespace Nodus
@@ -18,19 +18,7 @@ namespace Nodus
   {
     namespace
     {
-      enum class Kind
-      {
-        number,
-        positive,
-        whole,
-        natural,
-        point,
-        points,
-        cells,
-        steps,
-        wholes,
-        choice
-      };
+      using Kind = ArgumentKind;
 
       struct Argument
       {
@@ -200,89 +188,6 @@ namespace Nodus
         return found == table().end() ? nullptr : &*found;
       }
 
-      std::string in_words(const Kind kind)
-      {
-        switch (kind)
-        {
-          case Kind::number:
-            return "a number";
-          case Kind::positive:
-            return "a number > 0";
-          case Kind::whole:
-            return "a whole number >= 0";
-          case Kind::natural:
-            return "a whole number > 0";
-          case Kind::point:
-            return "x,y,z";
-          case Kind::points:
-            return "x,y,z; x,y,z; ...";
-          case Kind::cells:
-            return "three whole numbers > 0 separated by ','";
-          case Kind::steps:
-            return "three whole numbers > 0 separated by ',', or for each direction the widths of the cells, e.g. "
-                   "0.5,0.5; 1; 1";
-          case Kind::wholes:
-            return "six whole numbers >= 0 separated by ','";
-          case Kind::choice:
-            break;
-        }
-        return "true or false";
-      }
-
-      /// Whether @p text is a list of @p n (0: any number of) what @p is says.
-      template <typename Predicate>
-      bool is_list(const std::string &text, const char separator, const std::size_t n, const Predicate &is)
-      {
-        const auto items = dealii::Utilities::split_string_list(text, separator);
-        return (n == 0 || items.size() == n) && std::all_of(items.begin(), items.end(), is);
-      }
-
-      bool is_number(const std::string &text)
-      {
-        try
-        {
-          dealii::Utilities::string_to_double(text);
-          return true;
-        }
-        catch (const std::exception &)
-        {
-          return false;
-        }
-      }
-
-      bool is_of(const Kind kind, const std::string &text)
-      {
-        const auto positive = [](const std::string &t)
-        { return is_number(t) && dealii::Utilities::string_to_double(t) > 0.; };
-        const auto whole   = [](const std::string &t) { return std::regex_match(t, std::regex("\\d{1,9}")); };
-        const auto natural = [&](const std::string &t) { return whole(t) && positive(t); };
-        const auto point   = [](const std::string &t) { return is_list(t, ',', 3, is_number); };
-        const auto widths  = [&](const std::string &t) { return is_list(t, ',', 0, positive); };
-        switch (kind)
-        {
-          case Kind::number:
-            return is_number(text);
-          case Kind::positive:
-            return positive(text);
-          case Kind::whole:
-            return whole(text);
-          case Kind::natural:
-            return natural(text);
-          case Kind::point:
-            return point(text);
-          case Kind::points:
-            return is_list(text, ';', 8, point);
-          case Kind::cells:
-            return is_list(text, ',', 3, natural);
-          case Kind::steps:
-            return is_list(text, ',', 3, natural) || is_list(text, ';', 3, widths);
-          case Kind::wholes:
-            return is_list(text, ',', 6, whole);
-          case Kind::choice:
-            break;
-        }
-        return text == "true" || text == "false";
-      }
       /// Widths of cells must fill the box: deal.II looks at that in debug mode alone. @p given: arguments of
       /// subdivided_hyper_rectangle.
       std::string mistake_in_widths(const std::vector<std::string> &given)
@@ -348,7 +253,7 @@ namespace Nodus
       }
       for (const unsigned int i : count->arguments)
       {
-        const Kind kind    = find(name)->arguments[i].kind;
+        const auto kind    = find(name)->arguments[i].kind;
         const bool widths  = kind == Kind::steps && given[i].find(';') != std::string::npos;
         double     product = 1., sum = 0.;
         for (const std::string &item : dealii::Utilities::split_string_list(given[i], widths ? ';' : ','))
@@ -394,7 +299,7 @@ namespace Nodus
         wrong = "has " + std::to_string(given.size()) + (given.size() == 1 ? " argument" : " arguments") + ", but " +
                 name + " takes " + std::to_string(n);
       for (std::size_t i = 0; i < n && wrong.empty(); ++i)
-        if (!is_of(expected[i].kind, given[i]))
+        if (!matches(expected[i].kind, given[i]))
           wrong = "has '" + given[i] + "' for argument " + std::to_string(i + 1) + " of " + name + ", " +
                   expected[i].meaning + ", which must be " + in_words(expected[i].kind);
       for (const Order &order : orders)

@@ -1,6 +1,7 @@
 #include "run/judge.h"
 #include "mesh/sides.h"
 #include "parallel/largest.h"
+#include "run/body_balance.h"
 #include "run/increment_loops.h"
 #include "run/state_visitors.h"
 
@@ -237,7 +238,7 @@ namespace Nodus
     Vector missing(internal);
     missing -= external;
     missing += contact;
-    const double rigid = measure_rigid_bodies(missing, scale);
+    const double rigid = rigid_body_imbalance(model_, unknowns_.block(0), missing, scale);
     for (const auto i : system_.layout->owned[0])
       if (constraints.is_constrained(i))
         missing(i) = 0.;
@@ -245,7 +246,8 @@ namespace Nodus
     contact -= external;
     verdict[Measure::nodes] = {
         std::max(largest_entry(missing) / scale, rigid), tolerance(model_.parameters.newton.force_tolerance), ""};
-    verdict[Measure::bodies] = measure_bodies(missing, contact, scale);
+    verdict[Measure::bodies]           = body_imbalance(model_, *nodes_, unknowns_.block(0), missing, contact, scale);
+    verdict[Measure::bodies].tolerance = std::max(body_tolerance, tolerance(model_.parameters.newton.force_tolerance));
 
     Largest     prescribed;
     const auto &next = model_.boundary_conditions->increment_constraints(u);
@@ -254,88 +256,6 @@ namespace Nodus
         prescribed.add(next.get_inhomogeneity(i) / length_);
     verdict[Measure::prescribed] = {
         prescribed.on_all_ranks(model_.communicator), allowance * model_.parameters.newton.contact_tolerance, ""};
-  }
-
-  /// The resultants of what is @p missing at the free nodes of each body, relative to the forces @p acting on it.
-  Verdict::Finding Judge::measure_bodies(const Vector &missing, const Vector &acting, const double scale) const
-  {
-    constexpr unsigned int n     = 7; // force, moment, sum of the lengths of what acts
-    const OwnedNodes      &nodes = *nodes_;
-    std::vector<double>    sums(n * model_.bodies.size(), 0.);
-    std::vector<Point>     middle;
-    for (unsigned int b = 0; b < model_.bodies.size(); ++b)
-      middle.push_back(model_.bodies.bounding_box(b).center());
-    const auto &owned = system_.layout->owned[0];
-    for (unsigned int i = 0; i < nodes.X.size(); ++i)
-    {
-      const DoFIndex dof = owned.nth_index_in_set(dim * i);
-      Vector3        arm = nodes.X[i] - middle[nodes.body[i]], force, acts;
-      for (unsigned int c = 0; c < dim; ++c)
-      {
-        arm[c] += unknowns_.block(0)(dof + c);
-        force[c] = missing(dof + c);
-        acts[c]  = acting(dof + c);
-      }
-      double *const sum    = sums.data() + n * nodes.body[i];
-      const Vector3 moment = dealii::cross_product_3d(arm, force);
-      for (unsigned int c = 0; c < dim; ++c)
-      {
-        sum[c] += force[c];
-        sum[dim + c] += moment[c];
-      }
-      sum[2 * dim] += acts.norm();
-    }
-    dealii::Utilities::MPI::sum(sums, model_.communicator, sums);
-    Verdict::Finding worst{0., std::max(body_tolerance, tolerance(model_.parameters.newton.force_tolerance)), ""};
-    for (unsigned int b = 0; b < model_.bodies.size(); ++b)
-    {
-      const auto          ends  = model_.bodies.bounding_box(b).get_boundary_points();
-      const double *const sum   = sums.data() + n * b;
-      const double        force = std::max(sum[2 * dim], scale), size = ends.first.distance(ends.second);
-      worst.raise(std::max(Vector3({sum[0], sum[1], sum[2]}).norm() / force,
-                           Vector3({sum[3], sum[4], sum[5]}).norm() / (force * size)),
-                  "body " + std::to_string(b + 1));
-    }
-    return worst;
-  }
-
-  /// What the @p forces at the nodes of driven rigid bodies leave to their loads at components that are free, relative.
-  double Judge::measure_rigid_bodies(const Vector &forces, const double scale) const
-  {
-    constexpr unsigned int n      = RigidBodies::n_components;
-    const RigidBodies     &bodies = model_.rigid_bodies;
-    std::vector<double>    sums(n * bodies.size(), 0.);
-    for (unsigned int b = 0; b < bodies.size(); ++b)
-      for (const RigidBodies::Node &node : bodies.nodes(b))
-      {
-        Vector3 arm = node.X - bodies.centre(b), force;
-        for (unsigned int c = 0; c < dim; ++c)
-        {
-          arm[c] += unknowns_.block(0)(node.dof + c);
-          force[c] = forces(node.dof + c);
-        }
-        const Vector3 moment = dealii::cross_product_3d(arm, force);
-        for (unsigned int c = 0; c < dim; ++c)
-        {
-          sums[n * b + c] += force[c];
-          sums[n * b + dim + c] += moment[c];
-        }
-      }
-    dealii::Utilities::MPI::sum(sums, model_.communicator, sums);
-    Largest worst;
-    for (unsigned int b = 0; b < bodies.size(); ++b)
-    {
-      double largest = scale;
-      for (unsigned int c = 0; c < n; ++c)
-      {
-        const double lever = c < dim ? 1. : bodies.extent(b);
-        largest = std::max({largest, std::abs(bodies.load(b)[c]) / lever, std::abs(sums[n * b + c]) / lever});
-      }
-      for (unsigned int c = 0; c < n; ++c)
-        if (bodies.is_free(b, c))
-          worst.add((sums[n * b + c] - bodies.load(b)[c]) / ((c < dim ? 1. : bodies.extent(b)) * largest));
-    }
-    return worst.on_all_ranks(model_.communicator);
   }
 
   /// Where displacements of both sides are prescribed no multiplier can act: neither pressure nor friction is found

@@ -13,7 +13,7 @@ namespace Nodus
 {
   /// Measures a state before it is committed, without what the loops that found it worked with: forces of the bodies
   /// are integrated anew, the surfaces are paired anew by a contact interface of its own, and how far they are inside
-  /// each other is found from the faces alone (theory section 23).
+  /// each other is found from the faces alone (theory section 34).
   class Judge
   {
   public:
@@ -26,17 +26,15 @@ namespace Nodus
     Verdict judge();
 
   private:
-    void             set_up();
-    void             pair_anew();
-    double           tolerance(double of_newton) const;
-    void             measure_numbers(Verdict &verdict) const;
-    void             measure_contact(Verdict &verdict);
-    void             measure_pairs(Verdict &verdict) const;
-    void             measure_forces(Verdict &verdict);
-    Verdict::Finding measure_bodies(const Vector &missing, const Vector &acting, double scale) const;
-    double           measure_rigid_bodies(const Vector &forces, double scale) const;
-    void             measure_held(Verdict &verdict) const;
-    void             measure_intrusion(Verdict &verdict);
+    void   set_up();
+    void   pair_anew();
+    double tolerance(double of_newton) const;
+    void   measure_numbers(Verdict &verdict) const;
+    void   measure_contact(Verdict &verdict);
+    void   measure_pairs(Verdict &verdict) const;
+    void   measure_forces(Verdict &verdict);
+    void   measure_held(Verdict &verdict) const;
+    void   measure_intrusion(Verdict &verdict);
 
     const Model                      &model_;
     const States                     &states_;
