@@ -27,6 +27,7 @@ namespace Nodus
     };
     ContactWork contact_work() const;
     double      negligible_dissipation() const;
+    double      work_of_stresses() const;
     void        warn(const Energies &increment, const std::vector<unsigned int> &creating) const;
 
     const Model       &model_;
