@@ -41,6 +41,9 @@ namespace Nodus
     if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
       return "another run is writing to the results folder " + path + ": wait for its end";
 
+    if (const fs::path checkpoints = fs::path(path) / "checkpoints";
+        fs::exists(checkpoints, ignored) && !fs::is_directory(checkpoints, ignored))
+      return checkpoints.string() + " is no folder, but checkpoints of the run go there: remove it";
     const fs::path probe = fs::path(path) / ".writable";
     if (!std::ofstream(probe))
       return "cannot write in the results folder " + path;

@@ -289,8 +289,14 @@ namespace Nodus
                       "is larger than Maximum increment; lower it");
     }
 
-    void check(const Section &section, const AdaptivityParameters &adaptivity)
+    /// @p level: of the finest cells of any body before.
+    void check(const Section &section, const AdaptivityParameters &adaptivity, const std::uint64_t level)
     {
+      section.require((adaptivity.interval == 0 && adaptivity.repetitions == 0) ||
+                          level + adaptivity.maximum_level <= deepest_level,
+                      "Maximum level",
+                      "goes deeper than the " + std::to_string(deepest_level) +
+                          " levels that a mesh can have, together with the refinement of the bodies; lower it");
       section.require(adaptivity.refine_fraction + adaptivity.coarsen_fraction <= 1.,
                       "Coarsen fraction",
                       "and Refine fraction together are more than 1; no cell can be in both");
@@ -376,6 +382,9 @@ namespace Nodus
 
     Nodus::check({file, "Linear solver"}, linear_solver);
     Nodus::check({file, "Load stepping"}, load_stepping);
-    Nodus::check({file, "Adaptivity"}, adaptivity);
+    std::uint64_t level = 0;
+    for (const BodyParameters &body : bodies)
+      level = std::max(level, std::uint64_t(body.global_refinement) + body.local_refinement);
+    Nodus::check({file, "Adaptivity"}, adaptivity, level);
   }
 } // namespace Nodus

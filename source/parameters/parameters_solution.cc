@@ -127,7 +127,7 @@ namespace Nodus
       prm.add_parameter("Increments",
                         load.increments,
                         "Number of equal increments of each interval [-], unless they fail or grow.",
-                        Patterns::List(at_least_one, 1, many, ","));
+                        Patterns::List(Patterns::Integer(1, 1000000), 1, many, ","));
       prm.add_parameter("Cut back",
                         load.cut_back,
                         "Whether an increment that fails is halved and tried again [-]. After an easy one (see Easy "

@@ -206,7 +206,7 @@ namespace Nodus
     row_.swap(row);
     column_.swap(column);
     if (dealii::Utilities::MPI::max(finite ? 0 : 1, communicator_) != 0)
-      throw SolverFailure("Direct solver: the matrix holds a value that is not finite.",
+      throw SolverFailure("Direct solver: the matrix holds a value that is not finite",
                           SolverFailure::Kind::not_finite);
     return dealii::Utilities::MPI::max(changed ? 1 : 0, communicator_) != 0;
   }
@@ -339,7 +339,7 @@ namespace Nodus
     dealii::Utilities::MPI::sum(b, communicator_, b);
     const double norm_b = norm(b);
     if (!std::isfinite(norm_b))
-      throw SolverFailure("Direct solver: the right-hand side holds a value that is not finite.",
+      throw SolverFailure("Direct solver: the right-hand side holds a value that is not finite",
                           SolverFailure::Kind::not_finite);
 
     std::vector<double> x = b;
@@ -360,7 +360,7 @@ namespace Nodus
       r.swap(refined_residual);
     }
     if (!std::isfinite(norm(r)))
-      throw SolverFailure("Direct solver: the solution is not finite, the matrix is numerically singular.",
+      throw SolverFailure("Direct solver: the solution is not finite, the matrix is numerically singular",
                           SolverFailure::Kind::linear_solver);
 
     layout.reinit(solution);

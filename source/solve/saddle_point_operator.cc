@@ -42,7 +42,7 @@ namespace Nodus
     const double norms =
         bulk().norm_squared() + B_->norm_squared() + C_->norm_squared() + (C_uu_ ? C_uu_->norm_squared() : 0.);
     if (!std::isfinite(norms))
-      throw SolverFailure("Krylov solver: the matrix holds a value that is not finite.",
+      throw SolverFailure("Krylov solver: the matrix holds a value that is not finite",
                           SolverFailure::Kind::not_finite);
   }
 
@@ -212,7 +212,7 @@ namespace Nodus
       x.reinit(b);
       const double norm_b = b.l2_norm();
       if (!std::isfinite(norm_b))
-        throw SolverFailure(solver + ": the right-hand side holds a value that is not finite.",
+        throw SolverFailure(solver + ": the right-hand side holds a value that is not finite",
                             SolverFailure::Kind::not_finite);
       if (norm_b > 0.)
       {

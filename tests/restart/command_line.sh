@@ -57,6 +57,12 @@ wait $process
 grep -q "^Checkpoints of an earlier run are kept in parts/checkpoints.before" anew.log || fail "$(cat anew.log)"
 [ "$(ls parts/checkpoints.before | wc -l)" -gt 0 ] || fail "checkpoints.before is empty"
 
+mkdir taken && touch taken/checkpoints
+run taken > taken.log 2> taken.message
+[ $? = 1 ] || fail "checkpoints is a file: exit code $?"
+grep -q "taken/checkpoints is no folder" taken.message || fail "$(cat taken.message)"
+[ "$(ls taken)" = checkpoints ] || fail "checkpoints is a file: left $(ls taken)"
+
 long=$(printf 'x%.0s' $(seq 300))
 run "$long" > long.log 2> long.message
 [ $? = 1 ] || fail "folder name too long: exit code $?"
