@@ -37,39 +37,40 @@ namespace Nodus
       for (unsigned int a = 0; a < table_.nodes.size(); ++a)
         for (unsigned int i = 0; i < dim; ++i)
           external(dof(a, i)) += table_.value[q][a] * force[i];
+      if (tangent)
+        add_half(q, now, -1., *tangent);
     }
-    if (tangent)
-      add_half(u, -1., *tangent);
   }
 
   void FollowerPressure::add_unsymmetric(const std::vector<double> &u, FullMatrix<double> &tangent) const
   {
-    add_half(u, 1., tangent);
+    for (unsigned int q = 0; q < points_.size(); ++q)
+      add_half(q, tangents(q, u), 1., tangent);
   }
 
-  /// N_a v_b + @p sign N_b v_a: the cross product makes the half with - symmetric.
-  void FollowerPressure::add_half(const std::vector<double> &u, const double sign, FullMatrix<double> &tangent) const
+  /// The matrix of -w x du_b, w = p/2 (N_a v_b + @p sign N_b v_a): the cross product makes the half with - symmetric.
+  void FollowerPressure::add_half(const unsigned int  q,
+                                  const Tangents     &now,
+                                  const double        sign,
+                                  FullMatrix<double> &tangent) const
   {
-    const unsigned int   n = table_.nodes.size();
-    std::vector<Vector3> v(n);
-    for (unsigned int q = 0; q < points_.size(); ++q)
+    const unsigned int n = table_.nodes.size();
+    const double       p = pressure_[q] * points_[q].weight;
+    const auto         v = [&](const unsigned int a)
+    { return table_.gradient[0][q][a] * now.t[1] - table_.gradient[1][q][a] * now.t[0]; };
+    for (unsigned int a = 0; a < n; ++a)
     {
-      const Tangents now = tangents(q, u);
-      const double   p   = pressure_[q] * points_[q].weight;
-      for (unsigned int a = 0; a < n; ++a)
-        v[a] = table_.gradient[0][q][a] * now.t[1] - table_.gradient[1][q][a] * now.t[0];
-      for (unsigned int a = 0; a < n; ++a)
-        for (unsigned int b = 0; b < n; ++b)
+      const Vector3 v_a = v(a);
+      for (unsigned int b = 0; b < n; ++b)
+      {
+        const Vector3 w = p / 2. * (table_.value[q][a] * v(b) + sign * table_.value[q][b] * v_a);
+        for (unsigned int i = 0; i < dim; ++i)
         {
-          // the matrix of -w x du_b
-          const Vector3 w = p / 2. * (table_.value[q][a] * v[b] + sign * table_.value[q][b] * v[a]);
-          for (unsigned int i = 0; i < dim; ++i)
-          {
-            const unsigned int k = (i + 1) % dim, m = (i + 2) % dim;
-            tangent(dof(a, i), dof(b, k)) += w[m];
-            tangent(dof(a, i), dof(b, m)) -= w[k];
-          }
+          const unsigned int k = (i + 1) % dim, m = (i + 2) % dim;
+          tangent(dof(a, i), dof(b, k)) += w[m];
+          tangent(dof(a, i), dof(b, m)) -= w[k];
         }
+      }
     }
   }
 } // namespace Nodus

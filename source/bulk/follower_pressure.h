@@ -43,7 +43,7 @@ namespace Nodus
       Vector3 t[2];
     };
     Tangents     tangents(unsigned int q, const std::vector<double> &u) const;
-    void         add_half(const std::vector<double> &u, double sign, dealii::FullMatrix<double> &tangent) const;
+    void         add_half(unsigned int q, const Tangents &now, double sign, dealii::FullMatrix<double> &tangent) const;
     unsigned int dof(const unsigned int node, const unsigned int component) const
     {
       return fe_.component_to_system_index(component, table_.nodes[node]);
