@@ -15,6 +15,8 @@ namespace Nodus
     /// An increment that leaves more than this part of its energies unexplained is looked at, if that is more than the
     /// second number of all energies so far.
     constexpr double large_imbalance = 0.05, small_part = 0.01;
+    /// Of Young's modulus times volume: stored energies are not resolved below that, since laws see I + grad u.
+    constexpr double resolved = 1e-13;
     /// Friction must give so many times what the tolerances leave to be said to create energy.
     constexpr double beyond_tolerance = 10.;
   } // namespace
@@ -62,7 +64,7 @@ namespace Nodus
                  rest_before = increment.left_to_release(increment.begin);
     const auto &constraints  = model_.boundary_conditions->homogeneous_constraints();
     Energies    of_increment;
-    double      stored = 0., plastic = 0.;
+    double      stored = 0., plastic = 0., resolution = 0.;
     for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
     {
       const double moved   = now.unknowns.block(0)(i) - start.unknowns.block(0)(i);
@@ -79,10 +81,12 @@ namespace Nodus
     // What is stored and dissipated.
     const Vector u = model_.with_ghosts(now.unknowns.block(0));
     model_.solid->visit(u,
-                        [&](const auto &, const std::vector<SolidAssembler::PointResult> &points)
+                        [&](const auto &cell, const std::vector<SolidAssembler::PointResult> &points)
                         {
+                          const double modulus = model_.materials[cell->material_id()]->youngs_modulus();
                           for (const auto &point : points)
                           {
+                            resolution += resolved * modulus * point.JxW;
                             stored += point.stored_energy * point.JxW;
                             plastic += point.dissipation * point.JxW;
                           }
@@ -97,7 +101,8 @@ namespace Nodus
                         &of_increment.contact,
                         &of_increment.friction,
                         &stored,
-                        &plastic})
+                        &plastic,
+                        &resolution})
       *sum = dealii::Utilities::MPI::sum(*sum, model_.communicator);
     of_increment.stored  = stored - now.energies.stored;
     of_increment.plastic = plastic - now.energies.plastic;
@@ -111,7 +116,7 @@ namespace Nodus
     now.energies.stabilisation += of_increment.stabilisation;
     now.applied = applied;
     if (!increment.on_new_mesh()) // which stores another energy
-      warn(of_increment, work.creating);
+      warn(of_increment, work.creating, resolution);
   }
 
   EnergyAudit::ContactWork EnergyAudit::contact_work() const
@@ -178,8 +183,10 @@ namespace Nodus
     return work;
   }
 
-  /// @param creating sites of this rank where friction created energy. Collective.
-  void EnergyAudit::warn(const Energies &increment, const std::vector<unsigned int> &creating) const
+  /// @param creating sites of this rank where friction created energy. @param resolution of stored energies.
+  /// Collective.
+  void
+  EnergyAudit::warn(const Energies &increment, const std::vector<unsigned int> &creating, const double resolution) const
   {
     const ContactInterface &contact  = *model_.contact;
     const Energies         &energies = states_.now.energies;
@@ -194,6 +201,7 @@ namespace Nodus
     const double limit =
         std::max({large_imbalance * increment.throughput(),
                   small_part * energies.throughput(),
+                  resolution,
                   beyond_tolerance * model_.parameters.newton.force_tolerance * equilibrium_.forces().scale * motion});
     if (std::abs(increment.imbalance()) <= limit)
       return;
