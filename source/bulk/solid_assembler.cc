@@ -283,7 +283,7 @@ namespace Nodus
   {
     const auto copy = [&](const std::vector<double> &values, Vector &v)
     {
-      if (v.locally_owned_elements() != dof_handler.locally_owned_dofs())
+      if (v.size() != dof_handler.n_dofs() || v.locally_owned_elements() != dof_handler.locally_owned_dofs())
         v.reinit(dof_handler.locally_owned_dofs(), dof_handler.get_communicator());
       std::copy_n(values.begin(), dim * nodes->n_owned(), v.trilinos_vector()[0]);
     };
