@@ -53,9 +53,9 @@ namespace Nodus
 
     /// Faces with the vertices of each, and whether a vertex belongs to any of them.
     template <typename Value>
-    struct FaceTable
+    struct ByFace
     {
-      explicit FaceTable(const std::size_t n_vertices)
+      explicit ByFace(const std::size_t n_vertices)
           : has_vertex(n_vertices, 0)
       {
       }
@@ -79,18 +79,18 @@ namespace Nodus
     };
 
     /// Faces of ghosts at which the share ends, but not the mesh.
-    FaceTable<unsigned int>
+    ByFace<unsigned int>
     cut_faces(const CoarseMesh &mesh, const std::vector<char> &is_local, const std::vector<char> &owned_vertex)
     {
       // The cell behind has no vertex of an owned cell, or it would be a ghost.
-      FaceTable<unsigned int> n_cells(mesh.vertices.size()); // beside the face, among the local ones
+      ByFace<unsigned int> n_cells(mesh.vertices.size()); // beside the face, among the local ones
       for (std::size_t c = 0; c < mesh.cells.size(); ++c)
         if (const Cell &cell = mesh.cells[c]; is_local[c] && !all_of(owned_vertex, cell))
           for (const unsigned int f : Geometry::face_indices())
             if (const Face face = face_of(cell, f);
                 std::none_of(face.begin(), face.end(), [&](const unsigned int v) { return owned_vertex[v]; }))
               ++n_cells[face];
-      FaceTable<unsigned int> cut(mesh.vertices.size());
+      ByFace<unsigned int> cut(mesh.vertices.size());
       for (std::size_t c = 0; c < mesh.cells.size(); ++c)
         if (!is_local[c] && any_of(n_cells.has_vertex, mesh.cells[c]))
           for (const unsigned int f : Geometry::face_indices())
@@ -344,14 +344,14 @@ namespace Nodus
     for (std::size_t c = 0; c < n; ++c)
       is_local[c] = any_of(owned_vertex, mesh.cells[c]);
 
-    FaceTable<dealii::types::boundary_id> labels(mesh.vertices.size());
+    ByFace<dealii::types::boundary_id> labels(mesh.vertices.size());
     for (const auto &quad : mesh.boundary.boundary_quads)
     {
       Face face = {{quad.vertices[0], quad.vertices[1], quad.vertices[2], quad.vertices[3]}};
       std::sort(face.begin(), face.end());
       labels[face] = quad.boundary_id;
     }
-    FaceTable<unsigned int> cut = cut_faces(mesh, is_local, owned_vertex);
+    ByFace<unsigned int> cut = cut_faces(mesh, is_local, owned_vertex);
 
     dealii::TriangulationDescription::Description<dim, dim> share;
     share.comm      = communicator;

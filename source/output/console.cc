@@ -75,7 +75,7 @@ namespace Nodus
                 counts.status,
                 counts.newton) +
          (counts.krylov > 0 ? format(", %u Krylov iterations", counts.krylov) : "") +
-         (counts.fallbacks > 0 ? ", merged iteration given up" : ""));
+         (counts.fallbacks > 0 ? format(", %u fallbacks", counts.fallbacks) : ""));
     for (const auto &c : contact)
       line(format("  %s: force on slave (%.5g, %.5g, %.5g), max CPRESS %.5g, area %.5g, %u open, %u slip, %u stick",
                   c.name.c_str(),

@@ -143,7 +143,7 @@ namespace Nodus
                         not_negative);
       prm.add_parameter("Easy iterations",
                         load.easy_iterations,
-                        "An increment with at most so many Newton iterations, and no merged iteration given up, is "
+                        "An increment with at most so many Newton iterations, and no fallback, is "
                         "easy: the next one may be twice as large [-].",
                         count);
       prm.add_parameter(

@@ -1,4 +1,5 @@
 #include "run/equilibrium.h"
+#include "base/text.h"
 #include "contact/free_motions.h"
 #include "mesh/sides.h"
 #include "parallel/largest.h"
@@ -268,8 +269,8 @@ namespace Nodus
     if (part == 1.)
       return;
     journal_.count(Remedy::limited_step);
-    journal_.console.remark("the correction would take bodies through each other unseen: " +
-                            dealii::Utilities::to_string(part) + " of it is taken");
+    journal_.console.remark(
+        text("the correction would take bodies through each other unseen: ", part, " of it is taken"));
     step_limit_ = part;
   }
 

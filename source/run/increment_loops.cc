@@ -1,9 +1,8 @@
 #include "run/increment_loops.h"
+#include "base/text.h"
 #include "contact/loci.h"
 
-#include <deal.II/base/utilities.h>
-
-#include <sstream>
+#include <algorithm>
 #include <utility>
 
 namespace Nodus
@@ -136,15 +135,16 @@ namespace Nodus
     const Status::Violation violation = model_.contact->frozen_violation();
     if (violation.sites == 0)
       return;
-    const std::string  locus = model_.contact->locus(violation.site);
-    std::ostringstream text;
-    text << violation.sites << " sites whose statuses cycled contradict them, the worst by " << violation.value
-         << " of the largest pressure or of the cone, at " << locus;
+    const std::string locus = model_.contact->locus(violation.site);
+    const std::string what  = text(violation.sites,
+                                  " sites whose statuses cycled contradict them, the worst by ",
+                                  violation.value,
+                                  " of the largest pressure or of the cone, at ",
+                                  locus);
     if (violation.value > tolerated_violation)
-      throw SolverFailure("the status loop cycles: " + text.str() + ", more than " +
-                              dealii::Utilities::to_string(tolerated_violation),
+      throw SolverFailure(text("the status loop cycles: ", what, ", more than ", tolerated_violation),
                           SolverFailure::Kind::status_cycle);
-    journal_.console.remark("warning: " + text.str());
+    journal_.console.remark("warning: " + what);
   }
 
   bool IncrementLoops::threshold_converged(FixedPointLoop &loop, AndersonMixing &mixing)
@@ -170,11 +170,9 @@ namespace Nodus
     };
     std::vector<double> next = status.thresholds_at(pressure);
     mixing.add(owned(status.thresholds()), owned(next));
-    std::ostringstream text;
-    text << "threshold changes by " << change.value << ", most at " << worst;
-    if (mixing.contraction() > 0.)
-      text << ", " << mixing.contraction() << " times the change before";
-    journal_.console.remark(text.str());
+    journal_.console.remark(
+        text("threshold changes by ", change.value, ", most at ", worst) +
+        (mixing.contraction() > 0. ? text(", ", mixing.contraction(), " times the change before") : ""));
     note_pass(loop, change.value, worst);
     if (loop.finished(change.value, worst))
       return true;
@@ -206,19 +204,16 @@ namespace Nodus
     const bool   first = loop.counter() == 0;
     const double value = corrections_ == 0 ? 0. : first ? std::max(1., renewed_) : renewed_;
 
-    std::ostringstream text;
-    if (first)
-      text << "geometry: of the last increment so far; it changes most at " << worst;
-    else
-      text << "geometry: renewed, the last pass left " << renewed_ << " out of balance; it changes most at " << worst;
-    journal_.console.remark(text.str());
+    journal_.console.remark(
+        first
+            ? "geometry: of the last increment so far; it changes most at " + worst
+            : text("geometry: renewed, the last pass left ", renewed_, " out of balance; it changes most at ", worst));
     note_pass(loop, value, worst);
     const double before = loop.value();
     const bool   last   = loop.counter() + 1 >= model_.parameters.geometry_loop.maximum_passes;
     if (last && value > loop.tolerance() && value <= tolerated_rest(loop.tolerance()))
     {
-      journal_.console.remark("warning: the geometry loop ends with forces and contact laws off by " +
-                              dealii::Utilities::to_string(value));
+      journal_.console.remark(text("warning: the geometry loop ends with forces and contact laws off by ", value));
       return true;
     }
     if (loop.finished(value, worst))
@@ -229,7 +224,7 @@ namespace Nodus
     const bool cycle = loop.counter() >= 3 && largest_difference(surfaces, u, paired_before_) <= 1e-6 * change;
     if (cycle && ++geometry_cycles_ > tolerated_geometry_cycles)
       throw SolverFailure(
-          "the geometry loop cycles with period 2, criterion " + std::to_string(value) + ", worst at " + worst +
+          text("the geometry loop cycles with period 2, criterion ", value, ", worst at ", worst) +
               ": a slave node crosses an edge of the faceted master and back; try 'Normal = averaged' or "
               "smaller increments",
           SolverFailure::Kind::geometry_cycle);

@@ -10,6 +10,8 @@ import random
 import re
 import subprocess
 
+from random_cases import prm
+
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 NODUS = os.environ.get("NODUS", os.path.join(ROOT, "build-release", "nodus"))
 KINDS = ("prm", "json", "msh", "checkpoint", "expression", "set")
@@ -70,17 +72,6 @@ def parsed(text):
             key, value = line[len("set"):].split("=", 1)  # fmt: skip
             sections[-1][key.strip()] = value.strip()
     return tree
-
-
-def prm(tree, indent=""):
-    """Nested dictionaries as a parameter file."""
-    text = ""
-    for key, value in tree.items():
-        if isinstance(value, dict):
-            text += f"{indent}subsection {key}\n{prm(value, indent + '  ')}{indent}end\n"
-        else:
-            text += f"{indent}set {key} = {value}\n"
-    return text
 
 
 def put(tree, path, value):

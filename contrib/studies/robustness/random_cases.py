@@ -346,7 +346,7 @@ def run_case(options, n):
     with open(results + ".log") as log:
         text = log.read()
     row = {"case": n, **case.facts, "exit": child.returncode, "cpu": usage.ru_utime + usage.ru_stime,
-           "cut-backs": text.count("the increment is halved"), "fallbacks": text.count("merged iteration given up: "),
+           "cut-backs": text.count("the increment is halved"), "fallbacks": text.count(" given up: "),
            "used": remedies_used(text),
            "lost": text.count("have no master point any more")}  # fmt: skip
     row["reason"] = text.strip().splitlines()[-1] if child.returncode else ""

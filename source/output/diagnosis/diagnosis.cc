@@ -1,5 +1,6 @@
 #include "output/diagnosis/diagnosis.h"
 #include "base/complete_file.h"
+#include "base/text.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -14,15 +15,6 @@ namespace Nodus
   {
     constexpr unsigned int n_status_tests = 8; ///< whose statuses are kept
     constexpr unsigned int n_iterations = 10, n_passes = 6, n_attempts = 6, n_changes = 4;
-
-    template <typename... Parts>
-    std::string text(const Parts &...parts)
-    {
-      std::ostringstream stream;
-      stream.precision(4);
-      (stream << ... << parts);
-      return stream.str();
-    }
 
     std::string row(const std::vector<std::string> &cells)
     {

@@ -1,6 +1,7 @@
 #ifndef nodus_output_diagnosis_suspected_causes_h
 #define nodus_output_diagnosis_suspected_causes_h
 
+#include "base/text.h"
 #include "output/diagnosis/diagnosis.h"
 
 #include <iomanip>
@@ -18,15 +19,6 @@ namespace Nodus
 
     /// Residuals that fall by this factor or less from one iteration or pass to the next do not converge.
     constexpr double no_contraction = 0.9;
-
-    template <typename... Parts>
-    std::string text(const Parts &...parts)
-    {
-      std::ostringstream stream;
-      stream << std::setprecision(4);
-      (stream << ... << parts);
-      return stream.str();
-    }
 
     std::string joined(const std::vector<double> &values);
     std::string in_pair(const unsigned int pair, const std::string &key);
