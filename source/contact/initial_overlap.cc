@@ -17,6 +17,8 @@ namespace Nodus
   {
     /// Points this near the surface of a body, in cells, are on it.
     constexpr double on_surface = 1e-3;
+    /// Sites that are this much deeper than another one, in limits, are no deeper: the first one is named.
+    constexpr double round_off = 1e-9;
 
     double overlap_limit(const ContactPairParameters &pair, const ContactSurfaces &surfaces, const unsigned int p)
     {
@@ -76,7 +78,8 @@ namespace Nodus
     for (unsigned int s = 0; s < distance.size(); ++s)
     {
       const unsigned int p = surfaces.pair(s);
-      if (surfaces.is_owned(s) && surfaces.has_status(s) && pairing[s].found && distance[s] > deepest[p])
+      if (surfaces.is_owned(s) && surfaces.has_status(s) && pairing[s].found &&
+          distance[s] > deepest[p] + round_off * overlap_limit(pairs[p], surfaces, p))
       {
         deepest[p] = distance[s];
         where[p]   = {s};

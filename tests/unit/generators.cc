@@ -34,6 +34,7 @@ namespace
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  dealii::deal_II_exceptions::disable_abort_on_exception(); // what debug mode refuses is caught
   for (const std::string &name : Generators::names())
   {
     const std::string  example = Generators::example(name);
