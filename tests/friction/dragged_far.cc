@@ -65,7 +65,8 @@ int main(int argc, char **argv)
   check("all closed nodes slip", far.n_slip > 0 && far.n_stick == 0);
   check("friction over pressure", -far.force[0] / far.force[2], mu, 0.01);
   check("friction at most mu times the pressure", -far.force[0] <= mu * far.force[2]);
-  check_count("iterations, failed attempt included", far.counts.newton, 100);
+  // The count itself depends on round-off, since the failed attempt is far from a solution: 94, in debug mode 100.
+  check("at most 100 iterations, failed attempt included", far.counts.newton <= 100);
 
   p.load_stepping.increments[1] = 10;
   const Outcome near            = run(p);

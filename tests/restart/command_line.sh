@@ -11,6 +11,11 @@ fail()
   exit 1
 }
 
+exits_with() # <expected exit code> <exit code> <of what>
+{
+  [ "$2" = "$1" ] || fail "$3: exit code $2 instead of $1"
+}
+
 run() # <results folder> further arguments
 {
   local results=$1
@@ -30,12 +35,13 @@ for _ in $(seq 600); do
   [ -f parts/contact.csv ] && [ "$(wc -l < parts/contact.csv)" -gt 5 ] && break
   sleep 0.05
 done
+kill -STOP $process || fail "it was over before the second run" # it waits, so that the second run cannot come too late
 run parts > second.log 2> second.message
-[ $? = 1 ] || fail "a second run in the folder: exit code $?"
+exits_with 1 $? "a second run in the folder"
 grep -q "another run is writing to the results folder parts.*Output/Results folder" second.message || fail "$(cat second.message)"
-kill -TERM $process || fail "it was over before the signal"
+kill -TERM $process && kill -CONT $process || fail "it was over before the signal"
 wait $process
-[ $? = 143 ] || fail "exit code $? instead of 143"
+exits_with 143 $? "the run that was ended"
 grep -q "^nodus: ended by SIGTERM in increment .*; --restart continues from t = " parts.message || fail "$(cat parts.message)"
 run parts --restart > restart.log || fail "restart"
 grep -q "^Continues after increment " restart.log || fail "it began anew"
@@ -59,17 +65,17 @@ grep -q "^Checkpoints of an earlier run are kept in parts/checkpoints.before" an
 
 mkdir taken && touch taken/checkpoints
 run taken > taken.log 2> taken.message
-[ $? = 1 ] || fail "checkpoints is a file: exit code $?"
+exits_with 1 $? "checkpoints is a file"
 grep -q "taken/checkpoints is no folder" taken.message || fail "$(cat taken.message)"
 [ "$(ls taken)" = checkpoints ] || fail "checkpoints is a file: left $(ls taken)"
 
 long=$(printf 'x%.0s' $(seq 300))
 run "$long" > long.log 2> long.message
-[ $? = 1 ] || fail "folder name too long: exit code $?"
+exits_with 1 $? "folder name too long"
 grep -q "^nodus: input error: .*cannot create the results folder x*: File name too long.*Output/Results folder" long.message ||
   fail "$(cat long.message)"
 
 run /proc/nodus > unwritable.log 2> unwritable.message
-[ $? = 1 ] || fail "unwritable folder: exit code $?"
+exits_with 1 $? "unwritable folder"
 grep -q "cannot create the results folder /proc/nodus.*Output/Results folder" unwritable.message || fail "$(cat unwritable.message)"
 echo "all as it should be"
