@@ -1,6 +1,7 @@
 #include "contact/contact_interface.h"
 #include "contact/geometry_tangent.h"
 #include "contact/initial_overlap.h"
+#include "contact/initial_ties.h"
 #include "contact/intrusion.h"
 #include "contact/loci.h"
 #include "contact/site_values.h"
@@ -57,15 +58,20 @@ namespace Nodus
 
   // ---------------------------------------------------------------------------------------------------- geometry pass
 
-  void ContactInterface::begin(const BlockVector &unknowns)
+  std::vector<std::string> ContactInterface::begin(const BlockVector &unknowns)
   {
     surfaces_.fetch_masters(unknowns.block(0));
     gather(unknowns, unknowns.block(0));
     // the first statuses are those before anything has moved, rigid masters included
     surfaces_.move_rigid_masters(0., 0.);
     freeze_geometry();
-    start_statuses();
+    std::vector<double> distances;
+    for (unsigned int s = 0; s < pairing_.size(); ++s)
+      distances.push_back(distance(s));
+    refuse_overlap(pairs_, surfaces_, pairing_, distances);
+    status_.initialize(pairing_, distances);
     keep_frames();
+    return describe_untied(pairs_, surfaces_, pairing_, status_, distances);
   }
 
   void ContactInterface::gather(const BlockVector &unknowns, const Vector &start)
@@ -193,16 +199,6 @@ namespace Nodus
     }
     surfaces_.site_exchange().update(stuck);
     jump_.set_stuck(std::move(stuck));
-  }
-
-  /// Statuses of the first pairing.
-  void ContactInterface::start_statuses()
-  {
-    std::vector<double> distances;
-    for (unsigned int s = 0; s < pairing_.size(); ++s)
-      distances.push_back(distance(s));
-    refuse_overlap(pairs_, surfaces_, pairing_, distances);
-    status_.initialize(pairing_, distances);
   }
 
   /// Displacements of the surface nodes.

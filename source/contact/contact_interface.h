@@ -46,9 +46,10 @@ namespace Nodus
     /// An attempt at it: closed sites have a partner, the laws are not regularised, the ledger is empty.
     void begin_attempt();
 
-    /// The first pairing of a run, at the displacements of @p unknowns, and the statuses that belong to it. @throws
-    /// InputError on every rank where the bodies overlap too much.
-    void begin(const BlockVector &unknowns);
+    /// The first pairing of a run, at the displacements of @p unknowns, and the statuses that belong to it. Sentences
+    /// on what of tied pairs is not tied. @throws InputError on every rank where the bodies overlap too much, and where
+    /// nothing of a tied pair is tied.
+    std::vector<std::string> begin(const BlockVector &unknowns);
     /// Takes positions and multipliers from @p unknowns; @p start: displacements as the increment began.
     void gather(const BlockVector &unknowns, const Vector &start);
     /// Projects anew at the displacements of @p unknowns and carries its multipliers over (eq. X1): Lambda keeps its
@@ -184,7 +185,6 @@ namespace Nodus
     void                 keep_frames();
     void                 weigh();
     void                 carry_over_sticking();
-    void                 start_statuses();
     std::vector<Vector3> displacement() const;
     StatusInput          status_input() const;
 

@@ -52,6 +52,17 @@ namespace Nodus
     now_.friction_factor.assign(n, 1.);
   }
 
+  double Status::closing_distance(const unsigned int pair) const
+  {
+    const auto  &p     = pairs_[pair];
+    const double size  = surfaces_.face_size(pair);
+    const bool   lasts = p.contact_law != ContactLaw::unilateral;
+    if (!lasts && p.start.overclosure != Overclosure::adjust)
+      return initial_gap * size;
+    return std::max(initial_gap * size,
+                    lasts && p.start.adjustment_distance == 0. ? tying_distance * size : p.start.adjustment_distance);
+  }
+
   void Status::initialize(const Pairing &pairing, const std::vector<double> &distance)
   {
     using Initial = ContactPairParameters::InitialStatus;
@@ -61,15 +72,10 @@ namespace Nodus
         continue;
       const unsigned int p     = surfaces_.pair(k);
       const auto        &pair  = pairs_[p];
-      const double       size  = surfaces_.face_size(p);
       const bool         lasts = pair.contact_law != ContactLaw::unilateral; // closed for good
-      double             reach = initial_gap * size;
-      if (lasts || pair.start.overclosure == Overclosure::adjust)
-        reach = std::max(reach,
-                         lasts && pair.start.adjustment_distance == 0. ? tying_distance * size
-                                                                       : pair.start.adjustment_distance);
-      const bool near = -distance[k] <= reach && (pair.contact_law != ContactLaw::tied || distance[k] <= reach);
-      now_.contact[k] = pair.start.status == Initial::closed || (pair.start.status == Initial::by_gap && near);
+      const double       reach = closing_distance(p);
+      const bool         near = -distance[k] <= reach && (pair.contact_law != ContactLaw::tied || distance[k] <= reach);
+      now_.contact[k]         = pair.start.status == Initial::closed || (pair.start.status == Initial::by_gap && near);
       if ((lasts && now_.contact[k]) || (pair.start.overclosure == Overclosure::adjust && near) ||
           (pair.start.overclosure == Overclosure::interference && distance[k] > 0.))
         now_.adjustment[k] = distance[k];

@@ -136,6 +136,8 @@ namespace Nodus
              std::max(-threshold, threshold_floor_[pair]);
     }
 
+    /// Gap up to which sites of a pair start closed [length].
+    double closing_distance(unsigned int pair) const;
     /// First pairing of the run: by gap, closed or open, and what is adjusted. Collective.
     void initialize(const Pairing &pairing, const std::vector<double> &distance);
     /// Imposes the state of one site: S, S_f and mu lambda_s; call it on every rank that has the site. Collective.

@@ -117,10 +117,11 @@ namespace Nodus
     rigid_bodies.set_time(t);
   }
 
-  void Model::begin_contact(State &now)
+  std::vector<std::string> Model::begin_contact(State &now)
   {
-    contact->begin(now.unknowns);
+    const std::vector<std::string> untied = contact->begin(now.unknowns);
     refuse_hidden_overlap(parameters.contact_pairs, contact->surfaces(), bodies, *mapping);
+    return untied;
   }
 
   double Model::resolved_interference(const double t) const

@@ -33,9 +33,10 @@ namespace Nodus
     /// Prescribed displacements, loads and rigid motions at time @p t. Collective. @throws InputError, on every rank,
     /// where one is not a number.
     void set_conditions(double t);
-    /// The first pairing of a run, in the state @p now at rest. Collective. @throws InputError on every rank where the
-    /// bodies overlap too much.
-    void begin_contact(State &now);
+    /// The first pairing of a run, in the state @p now at rest. Sentences on what of tied pairs is not tied.
+    /// Collective.
+    /// @throws InputError on every rank where the bodies overlap too much, and where nothing of a tied pair is tied.
+    std::vector<std::string> begin_contact(State &now);
     /// Part of the interference of fits that is pressed out at time @p t.
     double resolved_interference(double t) const;
     /// All that holds in @p increment: conditions, stabilisation, the part of interference fits. Collective.

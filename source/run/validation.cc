@@ -345,10 +345,12 @@ namespace Nodus
   {
     describe_bodies(model, console);
     describe_conditions(model, console);
-    model.begin_contact(states.now);
-    states.committed = states.now;
+    const std::vector<std::string> untied = model.begin_contact(states.now);
+    states.committed                      = states.now;
     for (unsigned int pair = 0; pair < model.contact->surfaces().n_pairs(); ++pair)
       describe_pair(model, pair, console);
+    for (const std::string &sentence : untied)
+      console.line("  warning: " + sentence);
     model.contact->residual().jump.resize(model.contact->surfaces().n_sites()); // nothing rubs yet
     model.impose(first);
     describe_free_motions(model, states.now, first, console);

@@ -1,5 +1,7 @@
 // Two blocks of height 1, E = 1000, nu = 0, small strain, faces that do not match, in contact all over z = 0:
 // - tied, they are one: pulled by 0.002 they carry E 0.001, sheared with G 0.001 they move by 0.002;
+// - tied along one edge, with the upper one turned by 10 degrees about it: the log names the nodes that are not, the
+//   nearest of them 0.5 tan(10 degrees) = 0.08816 away;
 // - bilateral, they carry tension without friction, and with it tension times its coefficient;
 // - an overlap of 0.01 gives E 0.005 at once, or in the course of the interval, or nothing where it is adjusted; a gap
 //   that is adjusted is closed from the start.
@@ -7,6 +9,8 @@
 #include "../cases.h"
 
 #include <deal.II/base/mpi.h>
+
+#include <sstream>
 
 using namespace Cases;
 
@@ -75,6 +79,20 @@ namespace
       }
   }
 
+  void check_partly_tied()
+  {
+    Parameters p                   = blocks(0., Scheme::nodal);
+    p.contact_pairs[0].contact_law = ContactLaw::tied;
+    p.bodies[1].rotation_axis      = Vector3({0, 1, 0});
+    p.bodies[1].rotation_angle     = -10;
+    std::ostringstream lines;
+    ContactProblem     problem(p, world(), lines);
+    problem.run();
+    const std::string text = lines.str();
+    const auto        at   = text.find("warning: ");
+    report("partly tied", at == std::string::npos ? "no warning" : text.substr(at, text.find('\n', at) - at));
+  }
+
   void check_bilateral(const Scheme scheme, const double tolerance)
   {
     Parameters p                   = blocks(0., scheme);
@@ -139,6 +157,7 @@ int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   check_tied(Scheme::averaged, 1e-8);
+  check_partly_tied();
   check_bilateral(Scheme::averaged, 1e-8);
   check_overclosure(Scheme::averaged, 1e-8);
   for (const Scheme scheme : {Scheme::nodal, Scheme::integration_point})
