@@ -203,10 +203,11 @@ namespace Nodus
         sizes[p] /= std::max(directory_.size(p, side), 1u);
       return sizes;
     };
-    face_size_   = mean_size(slave_faces_, slave_side);
-    larger_face_ = mean_size(master_faces_, master_side);
+    face_size_        = mean_size(slave_faces_, slave_side);
+    master_face_size_ = mean_size(master_faces_, master_side);
     for (unsigned int p = 0; p < n_pairs(); ++p)
-      larger_face_[p] = std::max(larger_face_[p], face_size_[p]);
+      if (rigid_masters_[p])
+        master_face_size_[p] = face_size_[p];
   }
 
   void ContactSurfaces::move_rigid_masters(const double begin, const double end)

@@ -215,10 +215,10 @@ namespace Nodus
     {
       return face_size_[pair];
     }
-    /// The same of the side with the larger faces.
-    double larger_face(const unsigned int pair) const
+    /// The same of the master faces; of the slave faces where there are none.
+    double master_face_size(const unsigned int pair) const
     {
-      return larger_face_[pair];
+      return master_face_size_[pair];
     }
     const BlockLayout &layout() const
     {
@@ -355,7 +355,7 @@ namespace Nodus
     Sites                                      sites_;
     std::vector<std::vector<SurfaceFace>>      slave_faces_, master_faces_;
     std::vector<std::unique_ptr<RigidSurface>> rigid_masters_; ///< of each pair, or nullptr
-    std::vector<double>                        face_size_, larger_face_;
+    std::vector<double>                        face_size_, master_face_size_;
     Vector                                     fetched_at_; ///< displacement
     Held                                       held_;
     BlockLayout                                layout_;

@@ -22,7 +22,8 @@ namespace Nodus
     thresholds,   ///< of friction, from those of the pressure, relative to the largest one (eq. L2)
     held_depth,   ///< of sites where prescribed displacements hold both sides across the surface [mean face]
     held_slip,    ///< of closed sites with friction where they hold both sides along it [mean face]
-    penetration,  ///< of the surfaces of a pair, either way [mean face]
+    penetration,  ///< of the surfaces of a pair, either way [mean face of the side with the smaller ones]
+    unseen_depth, ///< likewise, of a pair without a closed site
     passed        ///< nodes that have gone through the other surface
   };
   constexpr unsigned int                         n_measures    = static_cast<unsigned int>(Measure::passed) + 1;
@@ -38,6 +39,7 @@ namespace Nodus
                                                                    "prescribed penetration",
                                                                    "prescribed slip",
                                                                    "penetration depth",
+                                                                   "penetration unseen",
                                                                    "nodes passed through"}};
 
   /// What the judge found in a state, the same on every rank.

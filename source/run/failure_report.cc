@@ -131,7 +131,10 @@ namespace Nodus
       evidence.pairs.resize(surfaces.n_pairs());
       std::vector<std::vector<Ranked<Point>>> lost(surfaces.n_pairs());
       for (unsigned int i = 0; i < surfaces.n_pairs(); ++i)
-        evidence.pairs[i].face_size = surfaces.face_size(i);
+      {
+        evidence.pairs[i].face_size        = surfaces.face_size(i);
+        evidence.pairs[i].master_face_size = surfaces.master_face_size(i);
+      }
       for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
       {
         if (!surfaces.is_owned(s) || !surfaces.has_status(s))

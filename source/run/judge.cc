@@ -24,9 +24,11 @@ namespace Nodus
     constexpr double body_tolerance = 1e-6, pair_force_tolerance = 1e-9, pair_moment_tolerance = 0.1;
     /// Of contradicted statuses, of the largest pressure or of the cone.
     constexpr double status_tolerance = 1e-3;
-    /// Of the mean face of the side with the larger ones.
-    constexpr double tolerated_depth = 0.25;
-    /// Of that, where displacements of both sides are prescribed: facets of curved surfaces overlap a little.
+    /// Of the mean face of the side with the smaller ones; and in a pair without a closed site, where facets of curved
+    /// surfaces may overlap, but nothing may be pressed in.
+    constexpr double tolerated_depth = 0.25, tolerated_unseen_depth = 0.05;
+    /// Of the mean face of the side with the larger ones, where displacements of both sides are prescribed: facets of
+    /// curved surfaces overlap a little.
     constexpr double tolerated_held_depth = 1e-2, tolerated_held_slip = 1e-6;
 
     /// Whether the numbers of a State on this rank are finite.
@@ -100,7 +102,8 @@ namespace Nodus
   void Judge::begin_on_mesh()
   {
     contact_.reset();
-    face_.clear();
+    larger_face_.clear();
+    smaller_face_.clear();
   }
 
   Verdict Judge::judge()
@@ -134,7 +137,11 @@ namespace Nodus
     system_.layout = &contact_->surfaces().layout();
     system_.layout->reinit(unknowns_); // a vector keeps its partition where only the sizes are those of another one
     for (unsigned int p = 0; p < model_.parameters.contact_pairs.size(); ++p)
-      face_.push_back(contact_->surfaces().larger_face(p));
+    {
+      const double slave = contact_->surfaces().face_size(p), master = contact_->surfaces().master_face_size(p);
+      larger_face_.push_back(std::max(slave, master));
+      smaller_face_.push_back(std::min(slave, master));
+    }
   }
 
   void Judge::pair_anew()
@@ -213,7 +220,7 @@ namespace Nodus
       {
         const std::string where = pair_label(model_.parameters.contact_pairs, p);
         forces.raise((r.slave_force + r.master_force).norm() / sums[p], where);
-        moments.raise((r.slave_moment + r.master_moment).norm() / (sums[p] * face_[p]), where);
+        moments.raise((r.slave_moment + r.master_moment).norm() / (sums[p] * larger_face_[p]), where);
       }
   }
 
@@ -273,9 +280,9 @@ namespace Nodus
         continue;
       const auto raise = [&](Status::Violation &violation, const double length)
       {
-        if (length / face_[p] > violation.value)
+        if (length / larger_face_[p] > violation.value)
         {
-          violation.value = length / face_[p];
+          violation.value = length / larger_face_[p];
           violation.site  = s;
         }
       };
@@ -305,17 +312,25 @@ namespace Nodus
     surfaces.gather(states_.committed.unknowns.block(0), before);
     surfaces.gather(unknowns_.block(0), now);
     std::vector<double> adjusted(surfaces.n_pairs(), 0.), tolerated; // where surfaces are apart or inside by intent
+    std::vector<unsigned int> closed(surfaces.n_pairs(), 0);
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
-      adjusted[surfaces.pair(s)] = std::max(adjusted[surfaces.pair(s)], std::abs(contact_->status().adjustment(s)));
+    {
+      const unsigned int p = surfaces.pair(s);
+      adjusted[p]          = std::max(adjusted[p], std::abs(contact_->status().adjustment(s)));
+      closed[p] += surfaces.is_owned(s) && surfaces.has_status(s) && contact_->status().contact(s);
+    }
     dealii::Utilities::MPI::max(adjusted, model_.communicator, adjusted);
+    dealii::Utilities::MPI::sum(closed, model_.communicator, closed);
     for (unsigned int p = 0; p < adjusted.size(); ++p)
-      tolerated.push_back(tolerated_depth * face_[p] + adjusted[p]);
+      tolerated.push_back(tolerated_depth * smaller_face_[p] + adjusted[p]);
 
     const Increment             &increment  = equilibrium_.increment();
     const std::vector<Intrusion> intrusions = find_intrusions(
         surfaces, surfaces.positions(before), surfaces.positions(now), increment.begin, increment.end, tolerated);
-    Verdict::Finding &depth = verdict[Measure::penetration], &passed = verdict[Measure::passed];
-    depth.tolerance = tolerated_depth;
+    Verdict::Finding &depth = verdict[Measure::penetration], &unseen = verdict[Measure::unseen_depth],
+                     &passed = verdict[Measure::passed];
+    depth.tolerance          = tolerated_depth;
+    unseen.tolerance         = tolerated_unseen_depth;
     for (unsigned int p = 0; p < intrusions.size(); ++p)
     {
       const auto &pair = model_.parameters.contact_pairs[p];
@@ -327,7 +342,8 @@ namespace Nodus
                pair_label(model_.parameters.contact_pairs, p);
       };
       const Intrusion &intrusion = intrusions[p];
-      depth.raise((intrusion.depth - adjusted[p]) / face_[p], where(intrusion.deepest));
+      (closed[p] > 0 ? depth : unseen)
+          .raise((intrusion.depth - adjusted[p]) / smaller_face_[p], where(intrusion.deepest));
       if (intrusion.passed > 0)
         passed.raise(passed.value + intrusion.passed, where(intrusion.first_passed));
     }

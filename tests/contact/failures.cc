@@ -162,6 +162,22 @@ int main(int argc, char **argv)
               outcome(held),
               {"prescribed penetration", "slave node ("});
 
+  // A punch of 0.2 into the top of a block of one cell: no node and no integration point of that is above the punch.
+  auto punch          = p;
+  punch.bodies        = {box("block", "1,1,1", {0, 0, 0}, {1, 1, 1}, 1000, 0.3),
+                         box("punch", "2,2,2", {0.4, 0.4, 1}, {0.6, 0.6, 1.2}, 1000, 0.3)};
+  punch.contact_pairs = {pair(region(1, {z_plus}), region(2, {z_minus}))};
+  auto &scheme        = punch.contact_pairs[0].scheme;
+  for (const auto kind : {ContactPairParameters::Scheme::nodal, ContactPairParameters::Scheme::integration_point})
+  {
+    scheme = kind;
+    check_words("a punch between the sites of a coarse slave is not left without contact",
+                outcome(punch),
+                {"penetration unseen", "master node (", "of Contact pair 1 ('pair')"});
+  }
+  scheme = ContactPairParameters::Scheme::averaged;
+  check("  the averaged scheme sees it", outcome(punch) == "no failure");
+
   auto apart                             = p;
   apart.bodies[1]                        = box("upper", "2,2,1", {0.1, 0.1, 1.5}, {0.9, 0.9, 2.5}, 100, 0.3);
   apart.contact_pairs[0].search_distance = 0.1;

@@ -81,12 +81,12 @@ namespace Nodus
     struct Pair
     {
       unsigned int sites = 0, closed = 0, slipping = 0;
-      unsigned int unpaired = 0;               ///< without master point
-      unsigned int lost     = 0;               ///< closed at the start of the increment, without master point now
-      Point        lost_X;                     ///< reference position of the first of these
-      double       sliding     = 0.;           ///< largest tangential motion in the increment [face sizes]
-      double       penetration = 0.;           ///< largest of open sites [face sizes]
-      double       reach = 0., face_size = 0.; ///< [length]
+      unsigned int unpaired = 0;     ///< without master point
+      unsigned int lost     = 0;     ///< closed at the start of the increment, without master point now
+      Point        lost_X;           ///< reference position of the first of these
+      double       sliding     = 0.; ///< largest tangential motion in the increment [face sizes]
+      double       penetration = 0.; ///< largest of open sites [face sizes]
+      double       reach = 0., face_size = 0., master_face_size = 0.; ///< [length]
     };
     std::vector<Pair> pairs;
 

@@ -11,6 +11,8 @@ namespace Nodus
   {
     /// A slave node that moves by more than this part of a face in an increment meets other faces in each iteration.
     constexpr double large_step = 0.5;
+    /// Slave faces that are so many times as large as those of the master do not see what is between their points.
+    constexpr double coarser = 1.5;
     /// Relative force residuals below this that do not fall any more are round-off of a badly conditioned system.
     constexpr double noise_floor = 1e-6;
     /// More passes or iterations than this are not worth while.
@@ -163,6 +165,32 @@ namespace Nodus
       }
     }
 
+    /// Where gaps are taken at points of the slave, what is between these is not seen.
+    void add_coarse_slave(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes)
+    {
+      for (unsigned int p = 0; p < evidence.pairs.size(); ++p)
+      {
+        const auto &pair     = evidence.pairs[p];
+        const auto &keys     = parameters.contact_pairs[p];
+        const bool  averaged = keys.scheme == ContactPairParameters::Scheme::averaged;
+        const bool  exact    = averaged && keys.integration == ContactPairParameters::Integration::segment;
+        if (pair.face_size <= coarser * pair.master_face_size || exact)
+          continue;
+        causes.push_back({"the master has finer faces than the slave",
+                          {text(pair_name(parameters, p),
+                                ": mean slave face ",
+                                pair.face_size,
+                                ", mean master face ",
+                                pair.master_face_size,
+                                "; gaps are taken at points of the slave faces, and what is between these is not seen"),
+                           evidence.message},
+                          {{in_pair(p, averaged ? "Integration" : "Scheme"),
+                            averaged ? text_of(keys.integration) : text_of(keys.scheme),
+                            averaged ? "segment" : "averaged",
+                            "gaps are integrated over the overlaps of the faces; or exchange slave and master"}}});
+      }
+    }
+
     void add_distorted_cells(const Parameters      &parameters,
                              const History         &history,
                              const FailureEvidence &evidence,
@@ -303,6 +331,8 @@ namespace Nodus
           {"displacements of both sides of the contact are prescribed",
            {evidence.message},
            {{"Boundary condition N/Boundary ids", "", "another face", "one side of the contact must be free"}}});
+    if (kind == Kind::judged)
+      add_coarse_slave(parameters, evidence, causes);
     if (kind == Kind::over_constraint)
       add_over_constraint(parameters, evidence, causes);
     if (kind == Kind::free_body || (!evidence.free_motions.empty() && !in_a_loop && !statuses))
