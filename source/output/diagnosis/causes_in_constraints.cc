@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 
 // Systems that have no unique solution: motions that nothing resists, and constraints that repeat others.
 

@@ -5,7 +5,6 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
-#include <sstream>
 
 // The page is Markdown. It stays one: every list ends after a few rows.
 

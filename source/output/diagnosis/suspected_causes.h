@@ -4,9 +4,6 @@
 #include "base/text.h"
 #include "output/diagnosis/diagnosis.h"
 
-#include <iomanip>
-#include <sstream>
-
 namespace Nodus
 {
   /// What the functions that find causes share, one function for each cause.
