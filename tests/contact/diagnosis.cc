@@ -215,4 +215,17 @@ int main(int argc, char **argv)
           "has the same bodies with slave and master exchanged",
           "/Slave where`",
           "/Slave body=1\" --set \"Contact pair 1/Slave boundary ids=5\""});
+
+  auto driven                          = p; // both surfaces of the contact are moved, along each other
+  driven.boundary_conditions[0].region = region(1, {z_plus});
+  driven.boundary_conditions[1] = condition("slide", Type::displacement, region(2, {z_minus}), {0, 1}, {"0.1*t", "0"});
+  driven.boundary_conditions.push_back(condition("down", Type::displacement, region(2, {z_plus}), {2}, {"-0.02*t"}));
+  driven.contact_pairs[0].friction_coefficient = 0.3;
+  expect("a contact whose sides are both driven",
+         page(driven),
+         "displacements of both sides of the contact are prescribed",
+         {"`Boundary condition 1/Boundary ids` | 5 |",
+          "it holds the master side of contact pair 1",
+          "`Boundary condition 2/Boundary ids` | 4 |",
+          "it holds the slave side of contact pair 1"});
 }

@@ -35,7 +35,45 @@ namespace Nodus
                     "\nend\n");
       }
 
+      /// Whether a condition may hold nodes of a contact surface: it has a boundary id of its faces, or @p around, of
+      /// any faces of its body, whose edges they may share.
+      bool may_hold(const BoundaryConditionParameters &condition, const RegionParameters &side, const bool around)
+      {
+        const auto &ids = condition.region.boundary_ids;
+        return condition.type == BoundaryConditionParameters::Type::displacement &&
+               (condition.region.body == 0 || condition.region.body == side.body) &&
+               (around || ids.empty() ||
+                std::any_of(ids.begin(),
+                            ids.end(),
+                            [&](const auto id) {
+                              return std::find(side.boundary_ids.begin(), side.boundary_ids.end(), id) !=
+                                     side.boundary_ids.end();
+                            }));
+      }
     } // namespace
+
+    void add_prescribed_contact(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes)
+    {
+      SuspectedCause cause{"displacements of both sides of the contact are prescribed", {evidence.message}, {}};
+      for (const bool around : {false, true})
+        for (unsigned int c = 0; c < parameters.boundary_conditions.size() && (!around || cause.changes.empty()); ++c)
+        {
+          const auto &condition = parameters.boundary_conditions[c];
+          for (unsigned int p = 0; p < parameters.contact_pairs.size(); ++p)
+            for (const RegionParameters *side :
+                 {&parameters.contact_pairs[p].slave, &parameters.contact_pairs[p].master})
+              if (may_hold(condition, *side, around))
+                cause.changes.push_back({text("Boundary condition ", c + 1, "/Boundary ids"),
+                                         as_list(condition.region.boundary_ids),
+                                         "another face",
+                                         text("it holds ",
+                                              side == &parameters.contact_pairs[p].slave ? "the slave" : "the master",
+                                              " side of ",
+                                              pair_name(parameters, p),
+                                              ", and one side of the contact must be free")});
+        }
+      causes.push_back(cause);
+    }
 
     void
     add_free_body(const Parameters &parameters, const History &history, const FailureEvidence &evidence, Causes &causes)

@@ -327,10 +327,7 @@ namespace Nodus
 
     // What the failure says itself, then what explains a failure of that kind, then the iteration as such.
     if (kind == Kind::prescribed_contact)
-      causes.push_back(
-          {"displacements of both sides of the contact are prescribed",
-           {evidence.message},
-           {{"Boundary condition N/Boundary ids", "", "another face", "one side of the contact must be free"}}});
+      add_prescribed_contact(parameters, evidence, causes);
     if (kind == Kind::judged)
       add_coarse_slave(parameters, evidence, causes);
     if (kind == Kind::over_constraint)

@@ -40,6 +40,8 @@ namespace Nodus
                        const History         &history,
                        const FailureEvidence &evidence,
                        Causes                &causes);
+    /// Displacements of both sides of a contact are prescribed.
+    void add_prescribed_contact(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
     void add_over_constraint(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
     /// Statuses that come and go.
     void add_status_cycle(const Parameters      &parameters,
