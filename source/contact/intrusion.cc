@@ -18,6 +18,8 @@ namespace Nodus
     constexpr double lift = 0.1;
     /// Where a step would take nodes through the other surface they end this part of a face behind it.
     constexpr double landing_depth = 0.25;
+    /// Of a way, to a third less each: what is left is nothing.
+    constexpr unsigned int most_sections = 60;
 
     /// What is found of one pair.
     class Search
@@ -121,13 +123,17 @@ namespace Nodus
         return part;
       }
 
-      /// Slave nodes against a rigid master in closed form.
+      /// Slave nodes against a rigid master in closed form. What moves relative to it does so in the frame that turns
+      /// with it, and in the one that only moves with its point: a node that passes does so in both, one that a tool
+      /// slides along or rolls over in one at most.
       void find(const std::vector<SurfaceFace> &own, RigidSurface &master, const double begin, const double end)
       {
         const Triangles     mine = triangles(own, now_);
         std::vector<double> were;
         master.set_increment(begin, begin);
         master.follow_carrier(before_);
+        const Placement place = master.placement();
+        const Point     point = master.point();
         for (const unsigned int n : mine.nodes())
           were.push_back(depth_in(master, before_[n], mine.normal(n)));
         master.set_increment(begin, end);
@@ -136,7 +142,12 @@ namespace Nodus
         {
           const unsigned int n     = mine.nodes()[i];
           const double       depth = depth_in(master, now_[n], mine.normal(n));
-          note(n, slave_side, depth > tolerated_ && were[i] > tolerated_ ? 0. : depth, false);
+          const bool         clear = depth <= tolerated_ && were[i] <= tolerated_;
+          note(n,
+               slave_side,
+               depth > tolerated_ && were[i] > tolerated_ ? 0. : depth,
+               clear && dips(master, master.placement().to(place.from(before_[n])), now_[n]) &&
+                   dips(master, before_[n] + (master.point() - point), now_[n]));
         }
       }
 
@@ -199,7 +210,28 @@ namespace Nodus
       double depth_in(const RigidSurface &master, const Point &x, const Vector3 &outward) const
       {
         const RigidPoint point = master.closest(x);
-        return point.found && point.normal * outward < NodeAnswer::far_side_cosine ? std::max(-point.height, 0.) : 0.;
+        return !point.found || point.normal * outward < NodeAnswer::far_side_cosine ? std::max(-master.height(x), 0.)
+                                                                                    : 0.;
+      }
+
+      /// Whether the straight way between two points outside goes deeper into a rigid body than is tolerated. Along a
+      /// line the height over a convex body is convex, and that over a cavity is least at an end.
+      bool dips(const RigidSurface &master, const Point &from, const Point &to) const
+      {
+        const auto   height = [&](const double s) { return master.height(Point(from + s * (to - from))); };
+        const double way    = from.distance(to);
+        if (0.5 * (height(0.) + height(1.) - way) > -tolerated_) // heights change by no more than the way
+          return false;
+        double left = 0., right = 1.;
+        for (unsigned int i = 0; i < most_sections && (right - left) * way > 0.1 * tolerated_; ++i)
+        {
+          const double a = left + (right - left) / 3., b = right - (right - left) / 3.;
+          const double height_a = height(a), height_b = height(b);
+          if (std::min(height_a, height_b) < -tolerated_)
+            return true;
+          (height_a < height_b ? right : left) = height_a < height_b ? b : a;
+        }
+        return false;
       }
 
       void note(const unsigned int node, const SurfaceSide side, const double depth, const bool passed)

@@ -48,7 +48,8 @@ namespace Nodus
   /// A node is behind a surface where the nearest point of the surface is none of its rim, has the node on its inner
   /// side and does not look the way of the node's own surface. It has passed where its way from @p before to @p now, a
   /// straight line, has for the last time crossed the other surface, which moves likewise, from its front, and ends
-  /// farther than the tolerated depth from it.
+  /// farther than the tolerated depth from it; or where it begins and ends outside of a rigid master in closed form,
+  /// and was deeper in it than that on the way.
   ///
   /// @p before, @p now: positions of ContactSurfaces::nodes(); @p begin, @p end: times of the increment, for rigid
   /// masters, which are left where they are at its end; @p tolerated: depth of each pair, > 0 [length]. The same on

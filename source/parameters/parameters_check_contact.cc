@@ -189,10 +189,9 @@ namespace Nodus
 
     using Scheme = ContactPairParameters::Scheme;
     using Rule   = ContactPairParameters::QuadratureRule;
-    section.require(
-        pair.scheme == Scheme::nodal || pair.weights != ContactPairParameters::Weights::consistent,
-        "Weights",
-        "is consistent, which needs 'Scheme = nodal'; the other schemes bring their own weights: remove the key");
+    section.require(pair.scheme == Scheme::nodal || pair.weights == ContactPairParameters::Weights::nodal_quadrature,
+                    "Weights",
+                    "is a choice of 'Scheme = nodal' alone; the other schemes bring their own weights: remove the key");
     const unsigned int n = pair.quadrature_points;
     section.require(n == 0 || pair.quadrature_rule != Rule::simpson || (n >= 3 && n % 2 == 1),
                     "Quadrature points",

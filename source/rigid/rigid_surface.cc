@@ -130,6 +130,19 @@ namespace Nodus
     return result;
   }
 
+  double RigidSurface::height(const Point &p) const
+  {
+    if (const RigidPoint point = closest(p); point.found)
+      return point.height;
+    // on the axis: of a sphere or a cylinder the radius away; of a paraboloid, beyond its focus, the circle where
+    // c^2/2 r^2 = c h - 1
+    const double radius = parameters_.radius;
+    if (parameters_.shape != MasterSurfaceParameters::Shape::paraboloid)
+      return parameters_.cavity ? radius : -radius;
+    const double c = (parameters_.cavity ? 1. : -1.) / radius, h = (p - point_) * axis_;
+    return (parameters_.cavity ? 1. : -1.) * std::sqrt(std::max(2. * c * h - 1., 0.)) * radius;
+  }
+
   /// In the plane of the axis and p the surface is height = c r^2/2, and r solves c^2/2 r^3 + (1 - c h) r = rho for a
   /// point at height h and distance rho from the axis.
   RigidPoint RigidSurface::closest_on_paraboloid(const Point &p) const

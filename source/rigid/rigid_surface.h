@@ -57,6 +57,18 @@ namespace Nodus
     void follow_carrier(const std::vector<Point> &x);
 
     RigidPoint closest(const Point &p) const;
+    /// Of a point above the surface, < 0 inside the rigid body; also where the closest point is not unique [length].
+    double height(const Point &p) const;
+
+    /// Where it is, and where its point is (of a sphere the centre).
+    const Placement &placement() const
+    {
+      return now_;
+    }
+    const Point &point() const
+    {
+      return point_;
+    }
 
     /// Part in a jump of its point @p x; zero of a carried surface, whose nodes have it.
     RigidPart part(const Point &x) const

@@ -178,6 +178,21 @@ int main(int argc, char **argv)
   scheme = ContactPairParameters::Scheme::averaged;
   check("  the averaged scheme sees it", outcome(punch) == "no failure");
 
+  // A rigid ball is driven through a sheet, from above it to below it, in one increment.
+  auto thrown                   = p;
+  thrown.bodies                 = {box("sheet", "4,4,1", {0, 0, 0}, {1, 1, 0.1}, 100, 0.3)};
+  thrown.boundary_conditions    = {hold("frame", region(1, {x_minus, x_plus}), {0, 1, 2})};
+  thrown.contact_pairs          = {ContactPairParameters()};
+  thrown.contact_pairs[0].slave = region(1, {z_plus});
+  thrown.load_stepping          = {{1.}, {1}};
+  thrown.load_stepping.cut_back = false;
+  auto &ball                    = thrown.contact_pairs[0].master_surface;
+  ball.shape                    = MasterSurfaceParameters::Shape::sphere;
+  ball.point                    = Point(0.5, 0.5, 0.3);
+  ball.radius                   = 0.15;
+  ball.motion.translation       = {"0", "0", "-0.8*t"};
+  check_words("a ball thrown through a sheet is noticed", outcome(thrown), {"nodes passed through", "slave node (0.5 0.5 0.1)"});
+
   auto apart                             = p;
   apart.bodies[1]                        = box("upper", "2,2,1", {0.1, 0.1, 1.5}, {0.9, 0.9, 2.5}, 100, 0.3);
   apart.contact_pairs[0].search_distance = 0.1;

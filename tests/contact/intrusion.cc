@@ -109,6 +109,26 @@ namespace
          {{Point(1, 0, 0), Point(1, 0, 2)}},
          {{Point(0, 1, 0), Point(0, 1, 2)}});
   }
+
+  /// A block whose top at z = 1 a rigid body in closed form moves against, in one increment.
+  void test_rigid(const std::string                   &what,
+                  const MasterSurfaceParameters::Shape shape,
+                  const Point                         &centre,
+                  const std::vector<std::string>      &translation,
+                  const std::string                   &rotation = "0")
+  {
+    ContactPairParameters contact;
+    contact.slave                             = region(1, {z_plus});
+    contact.master_surface.shape              = shape;
+    contact.master_surface.point              = centre;
+    contact.master_surface.axis               = Vector3({0, 1, 0});
+    contact.master_surface.radius             = 0.5;
+    contact.master_surface.motion.translation = translation;
+    contact.master_surface.motion.rotation    = rotation;
+    ContactFixture f({box("block", "4,4,2", {0, 0, 0}, {2, 2, 1}, 1., 0.)}, {contact}, 1);
+    const auto     at_rest = moved(f, {});
+    show(what, f, at_rest, at_rest);
+  }
 } // namespace
 
 int main(int argc, char **argv)
@@ -117,4 +137,14 @@ int main(int argc, char **argv)
   test_crossings();
   test(1);
   test(2);
+
+  using Shape = MasterSurfaceParameters::Shape;
+  test_rigid("a sphere comes down to 0.2", Shape::sphere, Point(1, 1, 1.6), {"0", "0", "-0.3*t"});
+  test_rigid("a sphere ends with its centre in a node", Shape::sphere, Point(1, 1, 1.6), {"0", "0", "-0.6*t"});
+  test_rigid("a sphere goes through the block", Shape::sphere, Point(1, 1, 1.6), {"0", "0", "-2*t"});
+  test_rigid("a sphere goes through it a thousand blocks far", Shape::sphere, Point(1, 1, 1.6), {"0", "0", "-1000*t"});
+  test_rigid("a sphere flies past above it", Shape::sphere, Point(-5, 1, 1.6), {"10*t", "0", "0"});
+  test_rigid("a cylinder goes through the block", Shape::cylinder, Point(1, 1, 1.6), {"0.1*t", "0.3*t", "-3*t"});
+  test_rigid("a cylinder turns on the block", Shape::cylinder, Point(1, 1, 1.5), {"0", "0", "0"}, "170*t");
+  test_rigid("a cylinder rolls over it", Shape::cylinder, Point(0.5, 1, 1.5), {"t", "0", "0"}, "360/3.14159265*t");
 }

@@ -140,7 +140,9 @@ int main(int argc, char **argv)
     }
   RigidSurface ball(surface(Shape::sphere, false), "test");
   check("no point is closest to the centre", !ball.closest(point).found);
+  check("  which is a radius deep", ball.height(point), -radius, 1e-12);
   RigidSurface bowl(surface(Shape::paraboloid, true), "test");
-  check("nor to a point of the axis beyond the focus",
-        !bowl.closest(point + 2. * radius * Vector3({1., 2., -0.5}) / std::sqrt(5.25)).found);
+  const Point  beyond = point + 2. * radius * Vector3({1., 2., -0.5}) / std::sqrt(5.25);
+  check("nor to a point of the axis beyond the focus", !bowl.closest(beyond).found);
+  check("  of height R sqrt(2 h/R - 1) for h = 2 R", bowl.height(beyond), radius * std::sqrt(3.), 1e-12);
 }
