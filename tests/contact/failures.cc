@@ -191,7 +191,9 @@ int main(int argc, char **argv)
   ball.point                    = Point(0.5, 0.5, 0.3);
   ball.radius                   = 0.15;
   ball.motion.translation       = {"0", "0", "-0.8*t"};
-  check_words("a ball thrown through a sheet is noticed", outcome(thrown), {"nodes passed through", "slave node (0.5 0.5 0.1)"});
+  check_words("a ball thrown through a sheet is noticed",
+              outcome(thrown),
+              {"nodes passed through", "slave node (0.5 0.5 0.1)"});
 
   auto apart                             = p;
   apart.bodies[1]                        = box("upper", "2,2,1", {0.1, 0.1, 1.5}, {0.9, 0.9, 2.5}, 100, 0.3);
