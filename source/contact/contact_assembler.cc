@@ -169,16 +169,40 @@ namespace Nodus
     law.held                    = status_.holds_friction(jump_site(point, 0));
   }
 
+  ContactResidual ContactAssembler::residual(const ContactState &state) const
+  {
+    ContactScatter scatter(surfaces_, jump_, state);
+    visit_points(state, false, nullptr, scatter);
+    return scatter.finish();
+  }
+
   ContactResidual
   ContactAssembler::assemble(const ContactState &state, LinearSystem &system, const bool linearise_threshold) const
   {
-    const unsigned int rank        = dealii::Utilities::MPI::this_mpi_process(surfaces_.layout().communicator);
-    const bool         unsymmetric = linearise_threshold && status_.threshold_follows_pressure();
+    const bool unsymmetric = linearise_threshold && status_.threshold_follows_pressure();
     system.contact.clear();
     system.variation.clear();
     system.border.clear();
     system.symmetric = !unsymmetric;
-    ContactScatter                    scatter(surfaces_, jump_, state);
+    ContactScatter scatter(surfaces_, jump_, state);
+    visit_points(state, unsymmetric, &system, scatter);
+    const ContactResidual result = scatter.finish();
+    scatter.fill_rhs(system);
+    scatter.add_turns(result, system);
+    system.multiplier_scale.assign(3 * surfaces_.n_owned_slave_nodes(), 1.); // eq. Q3
+    for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
+      if (result.friction_weight[k] > 0.)
+        for (unsigned int i = 1; i < 3; ++i)
+          system.multiplier_scale[3 * k + i] = weights_.area()[k] / result.friction_weight[k];
+    return result;
+  }
+
+  void ContactAssembler::visit_points(const ContactState &state,
+                                      const bool          unsymmetric,
+                                      LinearSystem *const system,
+                                      ContactScatter     &scatter) const
+  {
+    const unsigned int                rank = dealii::Utilities::MPI::this_mpi_process(surfaces_.layout().communicator);
     std::optional<ThresholdVariation> variation;
     if (unsymmetric)
       variation.emplace(surfaces_, weights_, status_);
@@ -209,18 +233,12 @@ namespace Nodus
         if (unsymmetric)
           variation->add(*point, law, sum);
       }
-      scatter.add(*begin, sum, system);
+      scatter.add(*begin, sum);
+      if (system != nullptr)
+        scatter.add_tangent(*begin, sum, *system);
       if (unsymmetric)
-        scatter.add_variation(*begin, sum, variation->slaves(), variation->variation(), system);
+        scatter.add_variation(*begin, sum, variation->slaves(), variation->variation(), *system);
     }
-
-    const ContactResidual result = scatter.finish(system);
-    system.multiplier_scale.assign(3 * surfaces_.n_owned_slave_nodes(), 1.); // eq. Q3
-    for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
-      if (result.friction_weight[k] > 0.)
-        for (unsigned int i = 1; i < 3; ++i)
-          system.multiplier_scale[3 * k + i] = weights_.area()[k] / result.friction_weight[k];
-    return result;
   }
 
   void ContactAssembler::add_forces(const ContactResidual &residual, Vector &force) const

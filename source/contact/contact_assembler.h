@@ -13,6 +13,7 @@
 
 namespace Nodus
 {
+  class ContactScatter;
   struct LawPoint;
 
   /// Nodal values that the contact terms depend on, of the local surface nodes and slave nodes.
@@ -51,6 +52,9 @@ namespace Nodus
                      const SurfaceWeights  &weights,
                      const Status          &status);
 
+    /// The residual alone. Collective.
+    ContactResidual residual(const ContactState &state) const;
+
     /// Fills the contact couplings, the multiplier scale, the border and the multiplier blocks of the right-hand side
     /// of @p system; subtracts the contact forces from its displacement block (free components only). Collective.
     /// @p linearise_threshold: the thresholds follow the current pressure (site_pressure, eq. T1-T4), and the tangent
@@ -71,6 +75,9 @@ namespace Nodus
     std::array<double, 2> slip(const ContactState &state, unsigned int site) const;
 
   private:
+    /// Adds what the contact law says of all points of this rank to @p scatter, with the tangent where there is a
+    /// @p system, and with the derivative by the thresholds where that is not symmetric.
+    void visit_points(const ContactState &state, bool unsymmetric, LinearSystem *system, ContactScatter &scatter) const;
     /// What the contact law of @p point depends on, into @p law.
     void gather(const ContactPoint &point, const ContactState &state, LawPoint &law) const;
 

@@ -298,14 +298,14 @@ namespace Nodus
     surfaces_.gather(prescribed, state_.prescribed);
   }
 
-  void ContactInterface::set_prescribed()
-  {
-    state_.prescribed.assign(state_.x.size(), Vector3());
-  }
-
   void ContactInterface::assemble(LinearSystem &system, const bool linearise_threshold)
   {
     residual_ = assembler_.assemble(state_, system, linearise_threshold);
+  }
+
+  void ContactInterface::evaluate()
+  {
+    residual_ = assembler_.residual(state_);
   }
 
   void ContactInterface::add_geometry_tangent(LinearSystem &system) const

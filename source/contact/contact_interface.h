@@ -94,9 +94,10 @@ namespace Nodus
     /// rates, which it sets (Status::threshold_change).
     Status::Change threshold_change(double duration);
 
-    /// Sets what the next correction must add at prescribed components, zero elsewhere; to zero without an argument.
+    /// Sets what the next correction must add at prescribed components, zero elsewhere.
     void set_prescribed(const Vector &prescribed);
-    void set_prescribed();
+    /// Keeps the residual of the present values.
+    void evaluate();
     /// Writes the contact terms of @p system and keeps the residual (ContactAssembler::assemble).
     void assemble(LinearSystem &system, bool linearise_threshold = false);
     /// Adds what the tangent gains where the geometry follows the iterate (GeometryTangent). assemble() comes first.

@@ -73,7 +73,18 @@ namespace Nodus
     (row < size && column < size ? inner : system.border).add(row, column, value);
   }
 
-  void ContactScatter::add(const ContactPoint &point, const LawSum &sum, LinearSystem &system)
+  void ContactScatter::add(const ContactPoint &point, const LawSum &sum)
+  {
+    const double *r = sum.residual.data();
+    for (unsigned int a = 0; a < sum.first_node / 3; ++a)
+      for (unsigned int l = 0; l < 3; ++l)
+        jump_residual_[3 * jump_site(point, a) + l] += *r++;
+    for (unsigned int a = 0; a < sum.n_nodes; ++a)
+      for (unsigned int l = 0; l < 3; ++l)
+        law_residual_[4 * point.slaves[a] + l] += *r++;
+  }
+
+  void ContactScatter::add_tangent(const ContactPoint &point, const LawSum &sum, LinearSystem &system)
   {
     const unsigned int n = sum.n_unknowns(), n_jumps = sum.first_node / 3;
     LocalVector        prescribed = LocalVector::Zero(n);
@@ -89,15 +100,9 @@ namespace Nodus
     for (unsigned int l = 0; l < 3; ++l)
     {
       for (unsigned int a = 0; a < n_jumps; ++a)
-      {
-        jump_residual_[3 * jump_site(point, a) + l] += r(3 * a + l);
         jump_rhs_[3 * jump_site(point, a) + l] += rhs(3 * a + l);
-      }
       for (unsigned int a = 0; a < sum.n_nodes; ++a)
-      {
-        law_residual_[4 * point.slaves[a] + l] += r(sum.first_node + 3 * a + l);
         law_rhs_[3 * point.slaves[a] + l] += rhs(sum.first_node + 3 * a + l);
-      }
     }
 
     for (unsigned int i = 0; i < n; ++i)
@@ -171,12 +176,10 @@ namespace Nodus
           system.border_rhs, shares_[s], Vector3({jump_rhs_[3 * s], jump_rhs_[3 * s + 1], jump_rhs_[3 * s + 2]}));
   }
 
-  ContactResidual ContactScatter::finish(LinearSystem &system)
+  ContactResidual ContactScatter::finish()
   {
     const BlockLayout &layout = surfaces_.layout();
     wait_for_all(layout.communicator);
-    fill_rhs(system);
-
     surfaces_.site_exchange().sum(jump_residual_, 3);
     surfaces_.slave_exchange().sum(law_residual_, 4);
     ContactResidual result;
@@ -187,10 +190,7 @@ namespace Nodus
     result.rigid.assign(2 * dim * layout.n_rigid, 0.);
     for (unsigned int s = 0; s < shares_.size(); ++s)
       if (surfaces_.is_owned(s) && shares_[s].weight != 0.)
-      {
         add_resultant(result.rigid, shares_[s], result.jump[s]);
-        add_turn(layout, shares_[s].body, shares_[s].arm, result.jump[s], system.border);
-      }
     for (unsigned int k = 0; k < surfaces_.slave_nodes().size(); ++k)
     {
       const double *const row = law_residual_.data() + 4 * k;
@@ -199,5 +199,12 @@ namespace Nodus
       result.friction_weight.push_back(row[3]);
     }
     return result;
+  }
+
+  void ContactScatter::add_turns(const ContactResidual &residual, LinearSystem &system) const
+  {
+    for (unsigned int s = 0; s < shares_.size(); ++s)
+      if (surfaces_.is_owned(s) && shares_[s].weight != 0.)
+        add_turn(surfaces_.layout(), shares_[s].body, shares_[s].arm, residual.jump[s], system.border);
   }
 } // namespace Nodus

@@ -26,9 +26,12 @@ namespace Nodus
     /// Adds the weight |mu lambda_s phi| of a point to its slave nodes with friction (eq. Q3).
     void add_friction_weight(const ContactPoint &point, const LawPoint &law);
 
-    /// Adds the @p sum of points with the unknowns of @p point: the tangent to the contact couplings and the border of
-    /// @p system, residual and right-hand side to what finish() hands over.
-    void add(const ContactPoint &point, const LawSum &sum, LinearSystem &system);
+    /// Adds the residual of the @p sum of points with the unknowns of @p point to what finish() hands over.
+    void add(const ContactPoint &point, const LawSum &sum);
+
+    /// Adds their tangent to the contact couplings and the border of @p system, and their right-hand side to what
+    /// fill_rhs() brings there.
+    void add_tangent(const ContactPoint &point, const LawSum &sum, LinearSystem &system);
 
     /// Adds the derivative of that sum with respect to the pressures lambda of slave nodes to the variation and the
     /// border: one column of @p derivative for each of @p slaves.
@@ -38,9 +41,15 @@ namespace Nodus
                        const Eigen::MatrixXd           &derivative,
                        LinearSystem                    &system) const;
 
-    /// Fills the right-hand side of the multipliers and of the border, subtracts the contact forces from that of the
-    /// displacements, and adds to the border what turning bodies do to moments. Returns the residual. Collective.
-    ContactResidual finish(LinearSystem &system);
+    /// The residual of all ranks. Collective.
+    ContactResidual finish();
+
+    /// Fills the right-hand side of the multipliers and of the border, and subtracts the contact forces from that of
+    /// the displacements. Collective.
+    void fill_rhs(LinearSystem &system);
+
+    /// Adds to the border what turning bodies do to the moments of the forces in @p residual.
+    void add_turns(const ContactResidual &residual, LinearSystem &system) const;
 
   private:
     /// Part of a driven rigid body in the jump of a site: weight T + omega x arm (eq. R4).
@@ -55,7 +64,6 @@ namespace Nodus
     void for_each_unknown(const ContactPoint &point, const LawSum &sum, unsigned int local, const Function &f) const;
     void add_entry(TripletMatrix &inner, DoFIndex row, DoFIndex column, double value, LinearSystem &system) const;
     void add_resultant(std::vector<double> &sum, const RigidShare &share, const Vector3 &force) const;
-    void fill_rhs(LinearSystem &system);
 
     const ContactSurfaces  &surfaces_;
     const JumpOperator     &jump_;

@@ -114,6 +114,11 @@ namespace Nodus
     now.energies.friction += of_increment.friction;
     now.energies.plastic = plastic;
     now.energies.stabilisation += of_increment.stabilisation;
+    if (!std::isfinite(of_increment.imbalance() + now.energies.imbalance()))
+      throw SolverFailure(
+          "forces and displacements are finite, but the energies of the increment are not: are the units "
+          "of lengths, stiffness and loads right?",
+          SolverFailure::Kind::not_finite);
     now.applied = applied;
     if (!increment.on_new_mesh()) // which stores another energy
       warn(of_increment, work.creating, resolution);

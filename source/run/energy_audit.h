@@ -16,6 +16,7 @@ namespace Nodus
 
     /// The increment has converged and its materials are committed; displacements, forces and jumps that it started
     /// from are those of the committed state. Adds its energies to those of the state at hand. Collective.
+    /// @throws SolverFailure on every rank where an energy is not finite
     void account();
 
   private:

@@ -95,10 +95,6 @@ namespace Nodus
     {
       return driven_;
     }
-    LinearSystem &system()
-    {
-      return system_;
-    }
     LinearSolverParameters::Type solver_type() const
     {
       return solver_->type();

@@ -244,8 +244,7 @@ namespace Nodus
       // Contact at the last iterate, whose bulk may be the reason why the rest of its residual was not computed.
       ContactInterface &contact = *p.model.contact;
       contact.gather(p.states.now.unknowns, p.states.committed.unknowns.block(0));
-      contact.set_prescribed();
-      contact.assemble(p.equilibrium.system());
+      contact.evaluate();
 
       const Increment &increment = p.equilibrium.increment();
       FailureEvidence  evidence;

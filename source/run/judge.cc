@@ -125,7 +125,7 @@ namespace Nodus
 
   void Judge::set_up()
   {
-    contact_       = std::make_unique<ContactInterface>(model_.parameters.contact_pairs,
+    contact_ = std::make_unique<ContactInterface>(model_.parameters.contact_pairs,
                                                   model_.pair_stiffness(),
                                                   model_.parameters.strategy,
                                                   model_.bodies,
@@ -133,9 +133,9 @@ namespace Nodus
                                                   *model_.mapping,
                                                   model_.rigid_bodies,
                                                   interface_state_);
-    nodes_         = std::make_unique<OwnedNodes>(model_.dof_handler, *model_.mapping);
-    system_.layout = &contact_->surfaces().layout();
-    system_.layout->reinit(unknowns_); // a vector keeps its partition where only the sizes are those of another one
+    nodes_   = std::make_unique<OwnedNodes>(model_.dof_handler, *model_.mapping);
+    // a vector keeps its partition where only the sizes are those of another one
+    contact_->surfaces().layout().reinit(unknowns_);
     for (unsigned int p = 0; p < model_.parameters.contact_pairs.size(); ++p)
     {
       const double slave = contact_->surfaces().face_size(p), master = contact_->surfaces().master_face_size(p);
@@ -163,9 +163,7 @@ namespace Nodus
     }
     else
       contact_->pair(unknowns_, start);
-    contact_->set_prescribed();
-    system_.layout->reinit(system_.rhs);
-    contact_->assemble(system_);
+    contact_->evaluate();
 
     Vector moved(unknowns_.block(0));
     moved -= start;
@@ -246,7 +244,7 @@ namespace Nodus
     missing -= external;
     missing += contact;
     const double rigid = rigid_body_imbalance(model_, unknowns_.block(0), missing, scale);
-    for (const auto i : system_.layout->owned[0])
+    for (const auto i : contact_->surfaces().layout().owned[0])
       if (constraints.is_constrained(i))
         missing(i) = 0.;
     missing.compress(dealii::VectorOperation::insert);
@@ -258,7 +256,7 @@ namespace Nodus
 
     Largest     prescribed;
     const auto &next = model_.boundary_conditions->increment_constraints(u);
-    for (const auto i : system_.layout->owned[0])
+    for (const auto i : contact_->surfaces().layout().owned[0])
       if (next.is_constrained(i))
         prescribed.add(next.get_inhomogeneity(i) / length_);
     verdict[Measure::prescribed] = {

@@ -43,7 +43,6 @@ namespace Nodus
     std::unique_ptr<const OwnedNodes> nodes_;   ///< of this mesh
     std::unique_ptr<ContactInterface> contact_; ///< of this mesh, paired at the state that is judged
     BlockVector                       unknowns_;
-    LinearSystem                      system_;                     ///< that contact terms are written to
     std::vector<double>               larger_face_, smaller_face_; ///< mean ones of the sides of each pair [length]
     double                            length_ = 0.; ///< of the step, that gaps and slips are measured against
   };

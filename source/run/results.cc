@@ -31,12 +31,8 @@ namespace Nodus
   {
     if (!vtu_ || model_.parameters.output.vtu_interval == 0)
       return;
-    const auto   timer = journal_.profile.time(Phase::output);
-    LinearSystem unused;
-    unused.layout = &model_.contact->surfaces().layout();
-    unused.layout->reinit(unused.rhs);
-    model_.contact->set_prescribed();
-    model_.contact->assemble(unused);
+    const auto timer = journal_.profile.time(Phase::output);
+    model_.contact->evaluate();
     vtu_->write(0, 0., model_.with_ghosts(states_.now.unknowns.block(0)), model_.contact->fields());
   }
 
