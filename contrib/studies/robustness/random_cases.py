@@ -291,12 +291,15 @@ class RandomCase:
             "driven": self.driven, "drag": self.travel, "curved": self.curved,
             "kind of weights": "consistent" if any(p.get("Weights") == "consistent" for p in self.pairs) else "others",
             "laws": [law["Law"] for law in self.laws[: len(self.grids)]], "cells": sum(self.cells),
-            "pairs": self.pairs,
+            "pairs": self.pairs, "conditions": self.conditions, "turn": self.turn.tolist(),
+            "materials": [self.tree[f"Body {b}"]["Material"] for b in range(1, len(self.grids) + 1)],
+            "mean dilatation": [self.tree[f"Body {b}"]["Volumetric treatment"] == "mean dilatation"
+                                for b in range(1, len(self.grids) + 1)],
         }  # fmt: skip
 
     def write(self, folder):
         path = common.write_case(os.path.join(folder, self.name), prm(self.tree))
-        common.write_mesh(os.path.join(folder, self.name), self.grids)
+        self.facts["mesh"] = common.write_mesh(os.path.join(folder, self.name), self.grids)
         return path
 
 

@@ -1,0 +1,287 @@
+"""Gaps, areas and jump operators of a contact pair, computed anew from the deformed surfaces for each scheme (theory.md, 6 to 8).
+
+Signs are those of theory.md: normals from slave to master, distances positive inside; the gap of users is minus the distance.
+"""
+
+import numpy as np
+
+import geometry
+from geometry import shape
+
+TOLERANCE = 0.05  # Projection tolerance by default [face sizes]; sites that were closed keep their partner up to twice that
+
+
+class Rows:
+    """Sites of a pair: distance (k,), normal (k, 3), area (k,), paired (k,), unsure (k,): nobody can tell without the history; g (k, n)
+    the jump operator on all nodes of the bodies, slave (n,) which of them are of the slave."""
+
+    def __init__(self, k, n):
+        self.distance, self.normal, self.area = np.zeros(k), np.zeros((k, 3)), np.zeros(k)
+        self.paired, self.unsure = np.zeros(k, bool), np.zeros(k, bool)
+        self.g, self.slave = np.zeros((k, n)), np.zeros(n, bool)
+
+    def jump(self, field):
+        return self.g @ field
+
+
+class Pair:
+    """Both surfaces of a pair (keys: the dictionary of its parameters) at one time."""
+
+    def __init__(self, bodies, keys, slave_faces, master_faces):
+        smoothed = keys.get("Surface", "smoothed") == "smoothed"
+        self.keys, self.bodies, self.degree = keys, bodies, bodies.degree
+        self.slave = geometry.Surface(bodies, slave_faces, smoothed)
+        self.master = geometry.Surface(bodies, master_faces, smoothed)
+        self.kind = keys.get("Normal", "averaged")
+        self.nodes = self.slave.nodes
+        box = bodies.x[self.master.nodes]
+        self.reach = 0.25 * np.linalg.norm(np.ptp(box, axis=0))
+        self.row = np.full(len(bodies.x), -1)
+        self.row[self.nodes] = np.arange(len(self.nodes))
+        self.faces = self.row[self.slave.faces]  # with numbers of slave nodes
+        self.node_normal = np.zeros((len(self.nodes), 3))
+        np.add.at(self.node_normal, self.faces.ravel(), self.slave.nodal_normal.reshape(-1, 3))
+        self.node_normal /= np.linalg.norm(self.node_normal, axis=1)[:, None]
+
+    def compute(self, preferred):
+        """Rows of the slave nodes: their own jumps, or averaged ones (J1). preferred (k, 3): normals that decide where two faces are
+        equally near, or where only the history tells whether a node beyond the rim has a closest point."""
+        rows = Rows(len(self.nodes), len(self.bodies.x))
+        rows.slave[self.nodes] = True
+        x = self.bodies.x[self.nodes]
+        face, xi, eta, over, ties = self.master.closest(x, self.node_normal)
+        found = face >= 0
+        found[found] = np.linalg.norm(x[found] - self.master.at(face[found], xi[found], eta[found])[0], axis=1) <= self.reach
+        if self.kind == "slave":
+            choices = np.arange(len(x))[found], self.node_normal[found]
+        else:
+            choices = ties[0], -self.master.normal(*ties[1:], self.kind == "averaged")
+        if self.keys["Scheme"] == "averaged":
+            self._averaged(rows, found, over, choices, preferred)
+            return rows
+        rows.paired = found & (over <= TOLERANCE)
+        rows.unsure = found & (over > 0.9 * TOLERANCE) & (over <= 2 * TOLERANCE)
+        hit = np.where(found)[0]
+        rows.normal[:] = self.node_normal
+        choose(rows.normal, preferred, *choices)
+        face, xi, eta = face[hit], xi[hit], eta[hit]
+        rows.distance[hit] = ((x[hit] - self.master.at(face, xi, eta)[0]) * rows.normal[hit]).sum(1)
+        rows.g[hit, self.nodes[hit]] = 1
+        np.subtract.at(rows.g, (hit[:, None], self.master.faces[face]), shape(self.degree, xi, eta)[0])
+        # trapezoids, Simpson's rule, or p + 2 Gauss points (section 8), current configuration
+        lumped = self.keys.get("Weights", "nodal quadrature") == "nodal quadrature"
+        xi, eta, w = geometry.square_rule("Newton-Cotes" if lumped else "Gauss", self.degree + (1 if lumped else 2))
+        self.add_areas(rows.area, xi, eta, w)
+        return rows
+
+    def add_areas(self, area, xi, eta, w):
+        f = np.repeat(np.arange(len(self.faces)), len(w))
+        xi, eta, w = (np.tile(v, len(self.faces)) for v in (xi, eta, w))
+        part = w[:, None] * self.slave.element(f, xi, eta)[:, None] * shape(self.degree, xi, eta)[0]
+        np.add.at(area, self.faces[f], part)
+
+    def points(self, kind, n, tolerance):
+        """Points of a fixed rule on all slave faces with their closest master points: f, xi, eta, w, face, xi', eta', overhang;
+        face -1 where there is none."""
+        xi, eta, w = geometry.square_rule(kind, n)
+        f = np.repeat(np.arange(len(self.faces)), len(w))
+        xi, eta, w = (np.tile(v, len(self.faces)) for v in (xi, eta, w))
+        x = self.slave.at(f, xi, eta)[0]
+        averaged = self.keys["Scheme"] == "integration point"
+        face, a, b, over, _ = self.master.closest(x, self.slave.normal(f, xi, eta, averaged))
+        far = np.linalg.norm(x - self.master.at(face, a, b)[0], axis=1) > self.reach
+        face[far | (over > tolerance)] = -1
+        return f, xi, eta, w, face, a, b, over
+
+    def point_rule(self):
+        kind = self.keys.get("Quadrature rule", "Gauss")
+        return kind, self.degree + 1 if kind == "Gauss" else 2 * self.degree + 1
+
+    def integration_points(self):
+        """Distance, face, local coordinates, weights with area, whether they have a partner, and whether that is unsure, of the points
+        of an integration point pair: (n,) each."""
+        f, xi, eta, w, face, a, b, over = self.points(*self.point_rule(), 2 * TOLERANCE)
+        hit = np.where(face >= 0)[0]
+        distance = np.full(len(f), -np.inf)
+        if self.kind == "slave":
+            normal = self.slave.normal(f[hit], xi[hit], eta[hit], True)
+        else:
+            normal = -self.master.normal(face[hit], a[hit], b[hit], self.kind == "averaged")
+        distance[hit] = ((self.slave.at(f[hit], xi[hit], eta[hit])[0] - self.master.at(face[hit], a[hit], b[hit])[0]) * normal).sum(1)
+        return distance, f, xi, eta, w * self.slave.element(f, xi, eta), face >= 0, (face >= 0) & (over > 0.9 * TOLERANCE)
+
+    def _averaged(self, rows, found, over, choices, preferred):
+        """(J1) to (J4). Nodes that have a closest point themselves take the normal there: one of choices (site, normal)."""
+        if self.keys.get("Integration", "segment") == "face":
+            f, s, t, w, m, a, b, _ = self.points("Gauss", 6 if self.degree == 1 else 10, TOLERANCE)
+            _, t1, t2 = self.slave.at(f, s, t)
+            part = w * np.linalg.norm(np.cross(t1, t2), axis=1)
+            coverage = np.bincount(f, part * (m >= 0), len(self.faces)) / np.bincount(f, part, len(self.faces))
+            # a face with nothing but overhang has no points
+            inside = np.zeros(len(self.faces), bool)
+            inside[f[(m >= 0) & (self.points("Gauss", 6 if self.degree == 1 else 10, 0.0)[4] >= 0)]] = True
+            coverage[~inside] = 0
+            keep = (m >= 0) & inside[f]
+            f, s, t, w, m, a, b = (v[keep] for v in (f, s, t, w, m, a, b))
+        else:
+            f, s, t, w, m, a, b, coverage = segments(self.slave, self.master, self.reach)
+        n_faces, (phi, hat), theirs = len(self.faces), (shape(self.degree, s, t)[0], geometry.hats(self.degree, s, t)), shape(self.degree, a, b)[0]
+        w = w * self.slave.element(f, s, t)
+        nn = phi.shape[1]
+        mass, lump = np.zeros((n_faces, nn, nn)), np.zeros((n_faces, nn))
+        np.add.at(mass, f, w[:, None, None] * phi[:, :, None] * phi[:, None])
+        np.add.at(lump, f, w[:, None] * phi)
+        dual_part = np.clip((coverage - 0.75) / 0.25, 0, 1)
+        dual = np.zeros_like(mass)
+        some = dual_part > 0
+        dual[some] = dual_part[some, None, None] * lump[some][:, :, None] * np.linalg.inv(mass[some])
+        psi = w[:, None] * (np.einsum("qab,qb->qa", dual[f], phi) + (1 - dual_part[f])[:, None] * hat)
+        sums, exact, full = np.zeros((n_faces, nn)), np.zeros((n_faces, nn)), np.zeros((n_faces, nn))
+        np.add.at(sums, f, psi)
+        for u, v, weight in zip(*geometry.square_rule("Gauss", 4)):
+            u, v = np.full(n_faces, u), np.full(n_faces, v)
+            area = weight * self.slave.element(np.arange(n_faces), u, v)[:, None]
+            exact += area * shape(self.degree, u, v)[0]
+            full += area * geometry.hats(self.degree, u, v)
+        scale = 1 + dual_part[:, None] * (exact / np.where(sums == 0, 1, sums) - 1)
+        psi *= scale[f]
+        whole = np.zeros(len(self.nodes))
+        np.add.at(whole, self.faces, dual_part[:, None] * exact + (1 - dual_part[:, None]) * full)
+        sites = self.faces[f]  # (q, nn)
+        gap = self.slave.at(f, s, t)[0] - self.master.at(m, a, b)[0]
+        across = self.slave.normal(f, s, t, True) if self.kind == "slave" else -self.master.normal(m, a, b, self.kind == "averaged")
+        mean, normal = np.zeros((len(self.nodes), 3)), np.zeros((len(self.nodes), 3))
+        np.add.at(rows.area, sites, psi)
+        np.add.at(mean, sites, psi[:, :, None] * gap[:, None])
+        np.add.at(normal, sites, (w[:, None] * hat)[:, :, None] * across[:, None])
+        np.add.at(rows.g, (sites[:, :, None], self.slave.faces[f][:, None]), psi[:, :, None] * phi[:, None])
+        np.add.at(rows.g, (sites[:, :, None], self.master.faces[m][:, None]), -psi[:, :, None] * theirs[:, None])
+        covered = rows.area / whole
+        rows.paired, rows.unsure = covered > 0.02, np.abs(covered - 0.02) < 0.001
+        rows.g[~rows.paired] = 0
+        on = np.where(rows.paired)[0]
+        rows.normal[:] = self.node_normal
+        rows.normal[on] = normal[on] / np.linalg.norm(normal[on], axis=1)[:, None]
+        # beyond the rim by 1 to 2 tolerances a node has a closest point if it had one: the mean is a choice like others
+        own, maybe = found & (over <= TOLERANCE), found & (over > 0.9 * TOLERANCE) & (over <= 2 * TOLERANCE)
+        use = rows.paired[choices[0]] & (own | maybe)[choices[0]]
+        mean_too = np.where(rows.paired & maybe)[0]
+        choose(rows.normal, preferred, np.concatenate([choices[0][use], mean_too]),
+               np.concatenate([choices[1][use], rows.normal[mean_too]]))  # fmt: skip
+        rows.g[on] /= rows.area[on, None]
+        rows.distance[on] = (mean[on] * rows.normal[on]).sum(1) / rows.area[on]
+        for k in on:
+            self._balance(rows, k)
+        # nodes without partner have the area of their whole surface
+        plain = np.zeros(len(self.nodes))
+        xi, eta, w = geometry.square_rule("Newton-Cotes", self.degree + 1)
+        self.add_areas(plain, xi, eta, w)
+        rows.area[~rows.paired] = plain[~rows.paired]
+
+    def _balance(self, rows, k):
+        """(J4): master weights that put the mean master point on the normal through the mean slave point."""
+        x, n, g = self.bodies.x, rows.normal[k], rows.g[k]
+        across = np.eye(3) - np.outer(n, n)
+        masters = np.where((np.abs(g) > 1e-13) & ~rows.slave)[0]
+        weight = np.abs(g[masters])
+        v = across @ (g @ x)
+        length = np.linalg.norm(v)
+        v *= min(1.0, 0.1 * np.sqrt(rows.area[k]) / max(length, 1e-300))
+        y = (x[masters] - weight @ x[masters] / weight.sum()) @ across
+        values, axes = np.linalg.eigh(np.einsum("e,ei,ej->ij", weight, y, y))
+        part = np.clip((values / (rows.area[k] * weight.sum()) - 1e-3) / 9e-3, 0, 1)
+        factor = np.where(part > 0, part**2 * (3 - 2 * part) / np.where(part > 0, values, 1), 0)
+        g[masters] -= weight * (y @ (axes @ (factor * (axes.T @ v))))
+
+
+def choose(normals, preferred, sites, choices):
+    """Sets normals (k, 3) of sites (c,) to those of their choices (c, 3) that are nearest to the preferred ones (k, 3)."""
+    order = np.lexsort((np.linalg.norm(choices - preferred[sites], axis=1), sites))
+    order = order[np.unique(sites[order], return_index=True)[1]]
+    normals[sites[order]] = choices[order]
+
+
+def segments(slave, master, reach):
+    """Points of overlaps in the planes of slave cells (faces, quarters for degree 2): f, xi, eta, w (without element of area), master
+    face, xi', eta'; and the covered fraction of each slave face."""
+    p = slave.degree
+    cells = [quarters(surface) for surface in (slave, master)]
+    (sf, su, sc), (mf, mu, mc) = cells
+    diagonal = np.cross(sc[:, 2] - sc[:, 0], sc[:, 3] - sc[:, 1])
+    normal = diagonal / np.linalg.norm(diagonal, axis=1)[:, None]
+    theirs = np.cross(mc[:, 2] - mc[:, 0], mc[:, 3] - mc[:, 1])
+    theirs /= np.linalg.norm(theirs, axis=1)[:, None]
+    e1 = sc[:, 1] - sc[:, 0]
+    e1 -= (e1 * normal).sum(1)[:, None] * normal
+    e1 /= np.linalg.norm(e1, axis=1)[:, None]
+    axes = np.stack([e1, np.cross(normal, e1)], 1)  # (cells, 2, 3)
+    flat = np.einsum("sac,skc->ska", axes, sc - sc[:, :1])
+    shadow = np.einsum("sac,smkc->smka", axes, mc[None] - sc[:, None, :1])
+    near = (theirs @ normal.T).T < -geometry.FACING
+    for c in range(2):
+        near &= (shadow[..., c].max(2) > flat[..., c].min(1)[:, None]) & (shadow[..., c].min(2) < flat[..., c].max(1)[:, None])
+    rule, weight = geometry.triangle_rule(p)
+    cell, other, at, area = [], [], [], []
+    for s, m in zip(*np.where(near)):
+        polygon = clip(flat[s], shadow[s, m][::-1])
+        for a, b in zip(polygon[1:-1], polygon[2:]):
+            a, b = a - polygon[0], b - polygon[0]
+            cell.append(s), other.append(m), area.append(0.5 * (a[0] * b[1] - a[1] * b[0]))
+            at.append(polygon[0] + rule[:, :1] * a + rule[:, 1:] * b)
+    cell, other = np.repeat(np.array(cell, int), len(weight)), np.repeat(np.array(other, int), len(weight))
+    at, area = np.array(at).reshape(-1, 2), np.outer(area, weight).ravel()
+    f, m = sf[cell], mf[other]
+    xi, eta, det, _ = invert(at, slave.x[slave.faces[f]], p, axes[cell], sc[cell, 0], su[cell])
+    x = slave.at(f, xi, eta)[0]
+    straight = np.einsum("qac,qc->qa", axes[cell], x - sc[cell, 0])
+    a, b, _, good = invert(straight, master.shape_points[m], master.shape_degree, axes[cell], sc[cell, 0], mu[other])
+    good &= np.linalg.norm(master.at(m, a, b)[0] - x, axis=1) <= reach
+    whole = 0.5 * np.linalg.norm(diagonal, axis=1)
+    coverage = np.bincount(f, area * good, len(slave.faces)) / np.bincount(sf, whole, len(slave.faces))
+    return [v[good] for v in (f, xi, eta, area / det, m, a, b)] + [coverage]
+
+
+def quarters(surface):
+    """Cells of each face: face (c,), local coordinates of their middles (c, 2), corners (c, 4, 3) counterclockwise."""
+    p, face, middle, corner = surface.degree, [], [], []
+    grid = surface.faces.reshape(-1, p + 1, p + 1)
+    for j in range(p):
+        for i in range(p):
+            face.append(np.arange(len(grid)))
+            middle.append(np.tile([(i + 0.5) / p, (j + 0.5) / p], (len(grid), 1)))
+            corner.append(surface.x[np.stack([grid[:, j, i], grid[:, j, i + 1], grid[:, j + 1, i + 1], grid[:, j + 1, i]], 1)])
+    return np.concatenate(face), np.concatenate(middle), np.concatenate(corner)
+
+
+def clip(window, polygon):
+    """The part of a convex polygon inside a convex window, both counterclockwise lists of points in the plane."""
+    for a, b in zip(window, np.roll(window, -1, axis=0)):
+        inside = [(b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) for p in polygon]
+        rest = []
+        for i, p in enumerate(polygon):
+            k = (i + 1) % len(polygon)
+            if inside[i] >= 0:
+                rest.append(p)
+            if inside[i] * inside[k] < 0:
+                rest.append(p + inside[i] / (inside[i] - inside[k]) * (polygon[k] - p))
+        polygon = rest
+        if len(polygon) < 3:
+            return []
+    return polygon
+
+
+def invert(at, points, degree, axes, origin, start):
+    """Local coordinates at which faces (points (q, nodes, 3)) are seen at places `at` (q, 2) of planes; the area in the plane over that
+    in local coordinates; whether that was found."""
+    flat = np.einsum("qac,qnc->qna", axes, points - origin[:, None])
+    xi, eta = start[:, 0].copy(), start[:, 1].copy()
+    for _ in range(30):
+        values, d1, d2 = (np.einsum("qn,qna->qa", s, flat) for s in shape(degree, xi, eta))
+        r = at - values
+        det = d1[:, 0] * d2[:, 1] - d1[:, 1] * d2[:, 0]
+        step = (r[:, 0] * d2[:, 1] - r[:, 1] * d2[:, 0]) / det, (d1[:, 0] * r[:, 1] - d1[:, 1] * r[:, 0]) / det
+        xi, eta = np.clip(xi + step[0], -9, 9), np.clip(eta + step[1], -9, 9)
+        size = np.abs(step[0]) + np.abs(step[1])
+        if size.max(initial=0) < 1e-12:
+            break
+    return xi, eta, np.abs(det), size < 1e-8

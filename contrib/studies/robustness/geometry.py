@@ -1,0 +1,278 @@
+"""Surfaces of bodies measured anew from bodies.vtu: smoothed faces, closest points, gaps of all schemes, depths. Written from
+theory.md (sections 6 to 8) and not from the program; nothing here reads a gap, a normal, an area or a partner that nodus wrote.
+
+Lengths are those of the file. Faces are [eta, xi] lattices of nodes with xi x eta outward, local coordinates in [0, 1].
+Not handled: hanging nodes, planes of symmetry through contact edges, rigid masters in closed form.
+"""
+
+import numpy as np
+
+SINGLE = 6e-8  # files hold single precision, relative
+SHARP = 0.70710678  # faces that meet at more than 45 degrees have no common normal
+FAR_SIDE = 0.5  # a face that looks along the slave normal is the far side of a body
+FACING = 0.1
+# Symmetric rules on triangles (Dunavant 1985), degrees 4 and 8: weight and barycentric a of (a, a, 1 - 2a); all their weights
+# add up to 1.
+_RULES = {1: ([(0.223381589678011, 0.445948490915965), (0.109951743655322, 0.091576213509771)], None, None),
+          2: ([(0.095091634267285, 0.459292588292723), (0.103217370534718, 0.170569307751760),
+               (0.032458497623198, 0.050547228317031)], 0.144315607677787,
+              (0.027230314174435, 0.263112829634638, 0.008394777409958))}  # fmt: skip
+
+
+def triangle_rule(degree):
+    """Points (n, 2) and weights (n,) with sum 1, on the triangle (0,0), (1,0), (0,1)."""
+    orbits, centre, general = _RULES[degree]
+    points, weights = [], []
+    for weight, a in orbits:
+        points += [(a, a), (a, 1 - 2 * a), (1 - 2 * a, a)]
+        weights += [weight] * 3
+    if centre:
+        weight, a, b = general
+        points += [(1 / 3, 1 / 3)] + [(s, t) for s in (a, b, 1 - a - b) for t in (a, b, 1 - a - b) if s != t]
+        weights += [centre] + [weight] * 6
+    return np.array(points), np.array(weights)
+
+
+def line_rule(kind, n):
+    """Points and weights on [0, 1]: "Gauss", "Simpson" (composite, n odd) or "Newton-Cotes"."""
+    if kind == "Gauss":
+        x, w = np.polynomial.legendre.leggauss(n)
+        return (x + 1) / 2, w / 2
+    x = np.linspace(0, 1, n)
+    if kind == "Simpson":
+        w = np.full(n, 2.0)
+        w[1::2], w[[0, -1]] = 4, 1
+        return x, w / w.sum()
+    return x, np.linalg.solve(np.vander(x, increasing=True).T, 1 / np.arange(1, n + 1))
+
+
+def square_rule(kind, n):
+    x, w = line_rule(kind, n)
+    eta, xi = np.meshgrid(x, x, indexing="ij")
+    return xi.ravel(), eta.ravel(), np.outer(w, w).ravel()
+
+
+def shape(degree, xi, eta):
+    """Values and both derivatives (3 arrays (n, (degree+1)^2)) of a face's functions at local coordinates (n,)."""
+    def line(s):
+        if degree == 1:
+            return np.stack([1 - s, s], 1), np.stack([-np.ones_like(s), np.ones_like(s)], 1)
+        return (np.stack([(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)], 1),
+                np.stack([4 * s - 3, 4 - 8 * s, 4 * s - 1], 1))  # fmt: skip
+
+    (a, da), (b, db) = line(xi), line(eta)
+    product = lambda y, x: (y[:, :, None] * x[:, None, :]).reshape(len(x), (degree + 1) ** 2)
+    return product(b, a), product(b, da), product(db, a)
+
+
+def hats(degree, xi, eta):
+    """Bilinear hats of the nodes, for degree 2 on the quarters of a face (J2)."""
+    line = lambda s: np.maximum(0, 1 - np.abs(degree * s[:, None] - np.arange(degree + 1)))
+    return (line(eta)[:, :, None] * line(xi)[:, None, :]).reshape(len(xi), (degree + 1) ** 2)
+
+
+def clusters(values, tolerance):
+    """Labels of numbers that lie closer together than a tolerance."""
+    order = np.argsort(values)
+    label = np.empty(len(values), np.int64)
+    label[order] = np.concatenate([[0], np.cumsum(np.diff(values[order]) > tolerance)])
+    return label
+
+
+class Bodies:
+    """Nodes and boundary of bodies.vtu at one time: x, X (n, 3) deformed and reference positions, body (n,), node (points of
+    the file,), faces (m, p+1, p+1) of the whole boundary, face_body (m,), degree p."""
+
+    def __init__(self, mesh, scale):
+        keys = [clusters(mesh.reference[:, c], 4e-6 * scale) for c in range(3)] + [np.round(mesh.fields["body"]).astype(int)]
+        _, first, node = np.unique(np.column_stack(keys), axis=0, return_index=True, return_inverse=True)
+        self.node = node.ravel()
+        self.x, self.X, self.body = mesh.points[first], mesh.reference[first], keys[3][first]
+        self.degree = mesh.cells.shape[1] - 1
+        self.cells = c = self.node[mesh.cells]
+        turned = lambda faces: np.swapaxes(faces, 1, 2)  # so that xi x eta looks outward
+        faces = np.concatenate([turned(c[:, :, :, 0]), c[:, :, :, -1], c[:, :, 0], turned(c[:, :, -1]), turned(c[:, 0]), c[:, -1]])
+        ends = np.sort(faces[:, [0, 0, -1, -1], [0, -1, 0, -1]], axis=1)
+        _, once, count = np.unique(ends, axis=0, return_index=True, return_counts=True)
+        self.faces = faces[once[count == 1]]
+        self.face_body = self.body[self.faces[:, 0, 0]]
+
+    def nearest(self, X, body):
+        """Nodes of a body at reference positions, and how far they are from there."""
+        own = np.where(self.body == body)[0]
+        distance = np.linalg.norm(X[:, None] - self.X[own][None], axis=2)
+        return own[distance.argmin(axis=1)], distance.min(axis=1, initial=np.inf)
+
+
+class Surface:
+    """A set of faces of Bodies, `smoothed` (P2) or not. Positions of points come from the smoothed faces, areas and
+    displacements from those of the nodes."""
+
+    def __init__(self, bodies, faces, smoothed):
+        self.degree, self.x, self.faces = bodies.degree, bodies.x, faces.reshape(len(faces), -1)
+        self.n = n = self.degree + 1
+        self.nodes = np.unique(self.faces)
+        lattice = np.arange(n) / self.degree
+        _, d1, d2 = shape(self.degree, np.tile(lattice, n), np.repeat(lattice, n))
+        corners = self.x[self.faces]
+        t1, t2 = np.einsum("qa,fac->fqc", d1, corners), np.einsum("qa,fac->fqc", d2, corners)
+        area = np.cross(t1, t2)
+        self.unit = area / np.linalg.norm(area, axis=2)[..., None]
+        self._average(area / ((t1**2).sum(2) * (t2**2).sum(2))[..., None])
+        self.shape_degree, self.shape_points = self.degree, corners
+        if smoothed and self.degree == 1:
+            self._smooth(corners)
+        middle = np.full(1, 0.5)
+        _, d1, d2 = shape(self.shape_degree, middle, middle)
+        centre_area = np.cross(np.einsum("a,fac->fc", d1[0], self.shape_points), np.einsum("a,fac->fc", d2[0], self.shape_points))
+        self.size = np.sqrt(np.linalg.norm(centre_area, axis=1))
+        self.centre_normal = centre_area / self.size[:, None] ** 2
+        grid = self.faces.reshape(-1, n, n)
+        edges = np.stack([grid[:, [0, -1], [0, 0]], grid[:, [0, -1], [-1, -1]], grid[:, [0, 0], [0, -1]], grid[:, [-1, -1], [0, -1]]], 1)
+        _, edge, count = np.unique(np.sort(edges, 2).reshape(-1, 2), axis=0, return_inverse=True, return_counts=True)
+        self.rim = count[edge.ravel()].reshape(-1, 4) == 1  # edges at xi = 0, xi = 1, eta = 0, eta = 1
+
+    def _average(self, weighted):
+        """(P1): normal (faces, nodes, 3) of each node of each face."""
+        flat, unit = self.faces.ravel(), self.unit.reshape(-1, 3)
+        weighted, order = weighted.reshape(-1, 3), np.argsort(self.faces.ravel(), kind="stable")
+        starts = np.concatenate([[0], np.where(np.diff(flat[order]))[0] + 1, [len(flat)]])
+        normal = np.empty_like(unit)
+        for a, b in zip(starts[:-1], starts[1:]):
+            i = order[a:b]
+            normal[i] = (unit[i] @ unit[i].T > SHARP) @ weighted[i]
+        self.nodal_normal = (normal / np.linalg.norm(normal, axis=1)[:, None]).reshape(self.unit.shape)
+
+    def _smooth(self, corners):
+        """(P2): nine points a face, the middles of edges on arcs."""
+        points = np.zeros((len(corners), 9, 3))
+        points[:, [0, 2, 6, 8]] = corners
+        self.bulge = 0.0
+        for a, b, m in ((0, 1, 1), (0, 2, 3), (1, 3, 5), (2, 3, 7)):
+            chord, na, nb = corners[:, b] - corners[:, a], self.nodal_normal[:, a], self.nodal_normal[:, b]
+            length = np.linalg.norm(chord, axis=1)
+            angle = np.arcsin(np.clip((chord * (nb - na)).sum(1) / (2 * length), -0.7, 0.7))
+            rise = length / 2 * np.tan(angle / 2)
+            points[:, m] = (corners[:, a] + corners[:, b]) / 2 + (rise / np.linalg.norm(na + nb, axis=1))[:, None] * (na + nb)
+            self.bulge = max(self.bulge, np.abs(rise).max())
+        points[:, 4] = points[:, [1, 3, 5, 7]].sum(1) / 2 - points[:, [0, 2, 6, 8]].sum(1) / 4
+        self.shape_degree, self.shape_points = 2, points
+
+    def at(self, f, xi, eta):
+        """Positions on the smoothed faces and both tangents, (n, 3) each."""
+        return [np.einsum("qa,qac->qc", s, self.shape_points[f]) for s in shape(self.shape_degree, xi, eta)]
+
+    def element(self, f, xi, eta):
+        """Area over that in local coordinates, of faces that are not smoothed."""
+        _, d1, d2 = shape(self.degree, xi, eta)
+        x = self.x[self.faces[f]]
+        return np.linalg.norm(np.cross(np.einsum("qa,qac->qc", d1, x), np.einsum("qa,qac->qc", d2, x)), axis=1)
+
+    def normal(self, f, xi, eta, averaged):
+        """Outward unit normals, averaged or of the smoothed face itself."""
+        if averaged:
+            n = np.einsum("qa,qac->qc", shape(self.degree, xi, eta)[0], self.nodal_normal[f])
+        else:
+            _, t1, t2 = self.at(f, xi, eta)
+            n = np.cross(t1, t2)
+        return n / np.linalg.norm(n, axis=1)[:, None]
+
+    def closest(self, p, normal):
+        """Closest points of faces that do not look along `normal` (far sides). p, normal: (n, 3). Returns face (-1: none), xi, eta,
+        how far the point hangs over the rim [face sizes], (n,) each; and ties, which single precision does not tell apart: point, face,
+        xi, eta."""
+        ties = []
+        face, xi, eta = np.full(len(p), -1), np.zeros(len(p)), np.zeros(len(p))
+        middle = np.full(len(self.faces), 0.5)
+        centre = self.at(np.arange(len(self.faces)), middle, middle)[0]
+        radius = 1.1 * np.linalg.norm(self.shape_points - centre[:, None], axis=2).max(axis=1)
+        for start in range(0, len(p), 2000):
+            part = slice(start, start + 2000)
+            distance = np.linalg.norm(p[part, None] - centre[None], axis=2)
+            distance[normal[part] @ self.centre_normal.T > FAR_SIDE] = np.inf
+            q, f = np.where(distance - radius <= distance.min(axis=1)[:, None])
+            q, f = q[np.isfinite(distance[q, f])], f[np.isfinite(distance[q, f])]
+            s, t = self._project(p[part][q], f)
+            away = np.linalg.norm(p[part][q] - self.at(f, s, t)[0], axis=1)
+            order = np.lexsort((f, away, q))
+            best = order[np.unique(q[order], return_index=True)[1]]
+            nearest = np.full(len(p), np.inf)
+            nearest[q[best]] = away[best]
+            tie = away <= nearest[q] + 1e-5 * self.size.mean()
+            ties.append(np.stack([start + q[tie], f[tie], s[tie], t[tie]]))
+            face[start + q[best]], xi[start + q[best]], eta[start + q[best]] = f[best], s[best], t[best]
+        over = np.zeros(len(p))
+        hit = np.where(face >= 0)[0]
+        at_rim = np.stack([xi <= 0, xi >= 1, eta <= 0, eta >= 1], 1)[hit] & self.rim[face[hit]]
+        hit = hit[at_rim.any(axis=1)]
+        n = self.normal(face[hit], xi[hit], eta[hit], False)
+        r = p[hit] - self.at(face[hit], xi[hit], eta[hit])[0]
+        over[hit] = np.linalg.norm(r - (r * n).sum(1)[:, None] * n, axis=1) / self.size[face[hit]]
+        ties = np.concatenate(ties, axis=1) if ties else np.zeros((4, 0))
+        return face, xi, eta, over, (ties[0].astype(int), ties[1].astype(int), ties[2], ties[3])
+
+    def _project(self, p, f):
+        """Local coordinates of the points of faces f that are closest to p, by Gauss-Newton steps within the square."""
+        at = np.full((len(p), 2), 0.5)
+        open_ = np.arange(len(p))
+        for _ in range(50):
+            x, t1, t2 = self.at(f[open_], at[open_, 0], at[open_, 1])
+            r = p[open_] - x
+            g = np.stack([(r * t1).sum(1), (r * t2).sum(1)], 1)
+            a, b, c = (t1 * t1).sum(1), (t1 * t2).sum(1), (t2 * t2).sum(1)
+            here = at[open_]
+            held = ((here <= 0) & (g <= 0)) | ((here >= 1) & (g >= 0))
+            b = np.where(held.any(axis=1), 0, b)
+            det = a * c - b * b
+            step = np.stack([c * g[:, 0] - b * g[:, 1], a * g[:, 1] - b * g[:, 0]], 1) / det[:, None]
+            new = np.clip(here + np.where(held, 0, step), 0, 1)
+            at[open_] = new
+            open_ = open_[np.abs(new - here).max(axis=1) > 1e-13]
+            if len(open_) == 0:
+                break
+        return at[:, 0], at[:, 1]
+
+    def triangles(self):
+        """(n, 3, 3): each face as four triangles around its middle, of degree 2 or smoothed each sixteenth of it."""
+        n = 1 if self.shape_degree == 1 else 4
+        quads = []
+        f = np.arange(len(self.faces))
+        corner = lambda i, j: self.at(f, np.full(len(f), i / n), np.full(len(f), j / n))[0]
+        for i in range(n):
+            for j in range(n):
+                quads.append(np.stack([corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1), corner(i + 0.5, j + 0.5)], 1))
+        quads = np.concatenate(quads)
+        return np.concatenate([quads[:, [i, (i + 1) % 4, 4]] for i in range(4)])
+
+
+def depth_below(points, triangles):
+    """How deep points (n, 3) lie under a closed surface (negative: outside), by the nearest of its outward triangles (m, 3, 3)."""
+    if len(points) == 0:
+        return np.zeros(0)
+    centre = triangles.mean(axis=1)
+    radius = np.linalg.norm(triangles - centre[:, None], axis=2).max(axis=1)
+    p_, t_ = [], []
+    for start in range(0, len(points), 500):
+        distance = np.linalg.norm(points[start : start + 500, None] - centre[None], axis=2)
+        q, t = np.where(distance - radius <= distance.min(axis=1)[:, None] * (1 + 1e-6))
+        p_.append(q + start), t_.append(t)
+    q, t = np.concatenate(p_), np.concatenate(t_)
+    a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    p = points[q]
+    height = ((p - a) * normal).sum(1)
+    foot = p - height[:, None] * normal
+    inside, distance = np.ones(len(q), bool), np.full(len(q), np.inf)
+    for s, e in ((a, b), (b, c), (c, a)):
+        along = e - s
+        inside &= (np.cross(along, foot - s) * normal).sum(1) >= 0
+        k = np.clip(((p - s) * along).sum(1) / (along * along).sum(1), 0, 1)
+        distance = np.minimum(distance, np.linalg.norm(p - s - k[:, None] * along, axis=1))
+    distance[inside] = np.abs(height[inside])
+    nearest = np.full(len(points), np.inf)
+    np.minimum.at(nearest, q, distance)
+    near = distance <= nearest[q] * (1 + 1e-9) + 1e-9 * radius.mean()
+    order = np.lexsort((np.where(near, -np.abs(height), 1.0), q))  # at an edge the face that sees the point most decides
+    order = order[np.unique(q[order], return_index=True)[1]]
+    return -np.sign(height[order]) * nearest[q[order]]
