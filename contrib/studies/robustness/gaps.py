@@ -19,9 +19,25 @@ class Rows:
         self.distance, self.normal, self.area = np.zeros(k), np.zeros((k, 3)), np.zeros(k)
         self.paired, self.unsure = np.zeros(k, bool), np.zeros(k, bool)
         self.g, self.slave = np.zeros((k, n)), np.zeros(n, bool)
+        self.others = []  # the same with other triangles
 
     def jump(self, field):
-        return self.g @ field
+        """Of the sites (k, 3), of a field (n, 3) on the nodes; and how much other triangles change it (k,)."""
+        jump = self.g @ field
+        return jump, max_of([np.linalg.norm(other.g @ field - jump, axis=1) for other in self.others], len(jump))
+
+    def force(self, on_slave):
+        """On all nodes (n, 3), of forces (k, 3) on the slave at its sites; and how much other triangles change it (n,)."""
+        force = self.g.T @ on_slave
+        return force, max_of([np.linalg.norm(other.g.T @ on_slave - force, axis=1) for other in self.others], len(force))
+
+    def spread(self):
+        """How much other triangles change the distance (k,)."""
+        return max_of([np.abs(other.distance - self.distance) for other in self.others], len(self.distance))
+
+
+def max_of(fields, n):
+    return 2 * np.max(fields, axis=0) if fields else np.zeros(n)  # three ways do not show the largest difference
 
 
 class Pair:
@@ -43,11 +59,15 @@ class Pair:
         np.add.at(self.node_normal, self.faces.ravel(), self.slave.nodal_normal.reshape(-1, 3))
         self.node_normal /= np.linalg.norm(self.node_normal, axis=1)[:, None]
 
+    def _empty(self):
+        rows = Rows(len(self.nodes), len(self.bodies.x))
+        rows.slave[self.nodes] = True
+        return rows
+
     def compute(self, preferred):
         """Rows of the slave nodes: their own jumps, or averaged ones (J1). preferred (k, 3): normals that decide where two faces are
         equally near, or where only the history tells whether a node beyond the rim has a closest point."""
-        rows = Rows(len(self.nodes), len(self.bodies.x))
-        rows.slave[self.nodes] = True
+        rows = self._empty()
         x = self.bodies.x[self.nodes]
         face, xi, eta, over, ties = self.master.closest(x, self.node_normal)
         found = face >= 0
@@ -57,7 +77,13 @@ class Pair:
         else:
             choices = ties[0], -self.master.normal(*ties[1:], self.kind == "averaged")
         if self.keys["Scheme"] == "averaged":
-            self._averaged(rows, found, over, choices, preferred)
+            if self.keys.get("Integration", "segment") == "face":
+                return self._averaged(rows, self._face_points(), found, over, choices, preferred)
+            # which triangles an overlap is cut into matters to the last digits of the rule: three ways show how much
+            overlaps = Segments(self.slave, self.master, self.reach)
+            self._averaged(rows, overlaps.points(0), found, over, choices, preferred)
+            for first in (1, 2):
+                rows.others.append(self._averaged(self._empty(), overlaps.points(first), found, over, choices, preferred))
             return rows
         rows.paired = found & (over <= TOLERANCE)
         rows.unsure = found & (over > 0.9 * TOLERANCE) & (over <= 2 * TOLERANCE)
@@ -98,34 +124,35 @@ class Pair:
         return kind, self.degree + 1 if kind == "Gauss" else 2 * self.degree + 1
 
     def integration_points(self):
-        """Distance, face, local coordinates, weights with area, whether they have a partner, and whether that is unsure, of the points
-        of an integration point pair: (n,) each."""
+        """Distance, face, local coordinates, weights with area, whether they have a partner, whether that is unsure (n,), and normals
+        (n, 3) of the points of an integration point pair."""
         f, xi, eta, w, face, a, b, over = self.points(*self.point_rule(), 2 * TOLERANCE)
         hit = np.where(face >= 0)[0]
-        distance = np.full(len(f), -np.inf)
-        if self.kind == "slave":
-            normal = self.slave.normal(f[hit], xi[hit], eta[hit], True)
-        else:
-            normal = -self.master.normal(face[hit], a[hit], b[hit], self.kind == "averaged")
-        distance[hit] = ((self.slave.at(f[hit], xi[hit], eta[hit])[0] - self.master.at(face[hit], a[hit], b[hit])[0]) * normal).sum(1)
-        return distance, f, xi, eta, w * self.slave.element(f, xi, eta), face >= 0, (face >= 0) & (over > 0.9 * TOLERANCE)
+        distance, normal = np.full(len(f), -np.inf), self.slave.normal(f, xi, eta, True)
+        if self.kind != "slave":
+            normal[hit] = -self.master.normal(face[hit], a[hit], b[hit], self.kind == "averaged")
+        apart = self.slave.at(f[hit], xi[hit], eta[hit])[0] - self.master.at(face[hit], a[hit], b[hit])[0]
+        distance[hit] = (apart * normal[hit]).sum(1)
+        return distance, f, xi, eta, w * self.slave.element(f, xi, eta), face >= 0, (face >= 0) & (over > 0.9 * TOLERANCE), normal
 
-    def _averaged(self, rows, found, over, choices, preferred):
+    def _face_points(self):
+        """Points of a fixed rule on all faces that have some, and the covered fraction of each face."""
+        rule = "Gauss", 6 if self.degree == 1 else 10
+        f, s, t, w, m, a, b, over = self.points(*rule, TOLERANCE)
+        _, t1, t2 = self.slave.at(f, s, t)
+        part = w * np.linalg.norm(np.cross(t1, t2), axis=1)
+        coverage = np.bincount(f, part * (m >= 0), len(self.faces)) / np.bincount(f, part, len(self.faces))
+        inside = np.zeros(len(self.faces), bool)  # a face with nothing but overhang has no points
+        inside[f[(m >= 0) & (over == 0)]] = True
+        coverage[~inside] = 0
+        keep = (m >= 0) & inside[f]
+        return [v[keep] for v in (f, s, t, w, m, a, b)] + [coverage]
+
+    def _averaged(self, rows, points, found, over, choices, preferred):
         """(J1) to (J4). Nodes that have a closest point themselves take the normal there: one of choices (site, normal)."""
-        if self.keys.get("Integration", "segment") == "face":
-            f, s, t, w, m, a, b, _ = self.points("Gauss", 6 if self.degree == 1 else 10, TOLERANCE)
-            _, t1, t2 = self.slave.at(f, s, t)
-            part = w * np.linalg.norm(np.cross(t1, t2), axis=1)
-            coverage = np.bincount(f, part * (m >= 0), len(self.faces)) / np.bincount(f, part, len(self.faces))
-            # a face with nothing but overhang has no points
-            inside = np.zeros(len(self.faces), bool)
-            inside[f[(m >= 0) & (self.points("Gauss", 6 if self.degree == 1 else 10, 0.0)[4] >= 0)]] = True
-            coverage[~inside] = 0
-            keep = (m >= 0) & inside[f]
-            f, s, t, w, m, a, b = (v[keep] for v in (f, s, t, w, m, a, b))
-        else:
-            f, s, t, w, m, a, b, coverage = segments(self.slave, self.master, self.reach)
-        n_faces, (phi, hat), theirs = len(self.faces), (shape(self.degree, s, t)[0], geometry.hats(self.degree, s, t)), shape(self.degree, a, b)[0]
+        f, s, t, w, m, a, b, coverage = points
+        phi, hat, theirs = shape(self.degree, s, t)[0], geometry.hats(self.degree, s, t), shape(self.degree, a, b)[0]
+        n_faces = len(self.faces)
         w = w * self.slave.element(f, s, t)
         nn = phi.shape[1]
         mass, lump = np.zeros((n_faces, nn, nn)), np.zeros((n_faces, nn))
@@ -177,6 +204,7 @@ class Pair:
         xi, eta, w = geometry.square_rule("Newton-Cotes", self.degree + 1)
         self.add_areas(plain, xi, eta, w)
         rows.area[~rows.paired] = plain[~rows.paired]
+        return rows
 
     def _balance(self, rows, k):
         """(J4): master weights that put the mean master point on the normal through the mean slave point."""
@@ -201,44 +229,51 @@ def choose(normals, preferred, sites, choices):
     normals[sites[order]] = choices[order]
 
 
-def segments(slave, master, reach):
-    """Points of overlaps in the planes of slave cells (faces, quarters for degree 2): f, xi, eta, w (without element of area), master
-    face, xi', eta'; and the covered fraction of each slave face."""
-    p = slave.degree
-    cells = [quarters(surface) for surface in (slave, master)]
-    (sf, su, sc), (mf, mu, mc) = cells
-    diagonal = np.cross(sc[:, 2] - sc[:, 0], sc[:, 3] - sc[:, 1])
-    normal = diagonal / np.linalg.norm(diagonal, axis=1)[:, None]
-    theirs = np.cross(mc[:, 2] - mc[:, 0], mc[:, 3] - mc[:, 1])
-    theirs /= np.linalg.norm(theirs, axis=1)[:, None]
-    e1 = sc[:, 1] - sc[:, 0]
-    e1 -= (e1 * normal).sum(1)[:, None] * normal
-    e1 /= np.linalg.norm(e1, axis=1)[:, None]
-    axes = np.stack([e1, np.cross(normal, e1)], 1)  # (cells, 2, 3)
-    flat = np.einsum("sac,skc->ska", axes, sc - sc[:, :1])
-    shadow = np.einsum("sac,smkc->smka", axes, mc[None] - sc[:, None, :1])
-    near = (theirs @ normal.T).T < -geometry.FACING
-    for c in range(2):
-        near &= (shadow[..., c].max(2) > flat[..., c].min(1)[:, None]) & (shadow[..., c].min(2) < flat[..., c].max(1)[:, None])
-    rule, weight = geometry.triangle_rule(p)
-    cell, other, at, area = [], [], [], []
-    for s, m in zip(*np.where(near)):
-        polygon = clip(flat[s], shadow[s, m][::-1])
-        for a, b in zip(polygon[1:-1], polygon[2:]):
-            a, b = a - polygon[0], b - polygon[0]
-            cell.append(s), other.append(m), area.append(0.5 * (a[0] * b[1] - a[1] * b[0]))
-            at.append(polygon[0] + rule[:, :1] * a + rule[:, 1:] * b)
-    cell, other = np.repeat(np.array(cell, int), len(weight)), np.repeat(np.array(other, int), len(weight))
-    at, area = np.array(at).reshape(-1, 2), np.outer(area, weight).ravel()
-    f, m = sf[cell], mf[other]
-    xi, eta, det, _ = invert(at, slave.x[slave.faces[f]], p, axes[cell], sc[cell, 0], su[cell])
-    x = slave.at(f, xi, eta)[0]
-    straight = np.einsum("qac,qc->qa", axes[cell], x - sc[cell, 0])
-    a, b, _, good = invert(straight, master.shape_points[m], master.shape_degree, axes[cell], sc[cell, 0], mu[other])
-    good &= np.linalg.norm(master.at(m, a, b)[0] - x, axis=1) <= reach
-    whole = 0.5 * np.linalg.norm(diagonal, axis=1)
-    coverage = np.bincount(f, area * good, len(slave.faces)) / np.bincount(sf, whole, len(slave.faces))
-    return [v[good] for v in (f, xi, eta, area / det, m, a, b)] + [coverage]
+class Segments:
+    """Overlaps of the master with the slave in the planes of slave cells (faces, quarters for degree 2)."""
+
+    def __init__(self, slave, master, reach):
+        self.slave, self.master, self.reach = slave, master, reach
+        (self.sf, self.su, self.sc), (self.mf, self.mu, mc) = quarters(slave), quarters(master)
+        sc = self.sc
+        self.diagonal = np.cross(sc[:, 2] - sc[:, 0], sc[:, 3] - sc[:, 1])
+        normal = self.diagonal / np.linalg.norm(self.diagonal, axis=1)[:, None]
+        theirs = np.cross(mc[:, 2] - mc[:, 0], mc[:, 3] - mc[:, 1])
+        theirs /= np.linalg.norm(theirs, axis=1)[:, None]
+        e1 = sc[:, 1] - sc[:, 0]
+        e1 -= (e1 * normal).sum(1)[:, None] * normal
+        e1 /= np.linalg.norm(e1, axis=1)[:, None]
+        self.axes = np.stack([e1, np.cross(normal, e1)], 1)  # (cells, 2, 3)
+        flat = np.einsum("sac,skc->ska", self.axes, sc - sc[:, :1])
+        shadow = np.einsum("sac,smkc->smka", self.axes, mc[None] - sc[:, None, :1])
+        near = (theirs @ normal.T).T < -geometry.FACING
+        for c in range(2):
+            near &= (shadow[..., c].max(2) > flat[..., c].min(1)[:, None]) & (shadow[..., c].min(2) < flat[..., c].max(1)[:, None])
+        self.polygons = [(s, m, clip(flat[s], shadow[s, m][::-1])) for s, m in zip(*np.where(near))]
+
+    def points(self, first):
+        """Points on triangles around corner `first` of each overlap: f, xi, eta, w (without element of area), master face, xi', eta'; and
+        the covered fraction of each slave face."""
+        slave, master, p = self.slave, self.master, self.slave.degree
+        rule, weight = geometry.triangle_rule(p)
+        cell, other, at, area = [], [], [], []
+        for s, m, polygon in self.polygons:
+            polygon = polygon[first % max(len(polygon), 1) :] + polygon[: first % max(len(polygon), 1)]
+            for a, b in zip(polygon[1:-1], polygon[2:]):
+                a, b = a - polygon[0], b - polygon[0]
+                cell.append(s), other.append(m), area.append(0.5 * (a[0] * b[1] - a[1] * b[0]))
+                at.append(polygon[0] + rule[:, :1] * a + rule[:, 1:] * b)
+        cell, other = np.repeat(np.array(cell, int), len(weight)), np.repeat(np.array(other, int), len(weight))
+        at, area = np.array(at).reshape(-1, 2), np.outer(area, weight).ravel()
+        f, m, axes, origin = self.sf[cell], self.mf[other], self.axes[cell], self.sc[cell, 0]
+        xi, eta, det, _ = invert(at, slave.x[slave.faces[f]], p, axes, origin, self.su[cell])
+        x = slave.at(f, xi, eta)[0]
+        straight = np.einsum("qac,qc->qa", axes, x - origin)
+        a, b, _, good = invert(straight, master.shape_points[m], master.shape_degree, axes, origin, self.mu[other])
+        good &= np.linalg.norm(master.at(m, a, b)[0] - x, axis=1) <= self.reach
+        whole = 0.5 * np.linalg.norm(self.diagonal, axis=1)
+        coverage = np.bincount(f, area * good, len(slave.faces)) / np.bincount(self.sf, whole, len(slave.faces))
+        return [v[good] for v in (f, xi, eta, area / det, m, a, b)] + [coverage]
 
 
 def quarters(surface):

@@ -119,6 +119,7 @@ class Surface:
         area = np.cross(t1, t2)
         self.unit = area / np.linalg.norm(area, axis=2)[..., None]
         self._average(area / ((t1**2).sum(2) * (t2**2).sum(2))[..., None])
+        self.bulge = self._bulge(corners)
         self.shape_degree, self.shape_points = self.degree, corners
         if smoothed and self.degree == 1:
             self._smooth(corners)
@@ -143,18 +144,24 @@ class Surface:
             normal[i] = (unit[i] @ unit[i].T > SHARP) @ weighted[i]
         self.nodal_normal = (normal / np.linalg.norm(normal, axis=1)[:, None]).reshape(self.unit.shape)
 
+    def _bulge(self, corners):
+        """How far an arc that meets the normals rises above an edge, or half an edge of degree 2, at most."""
+        p, n, largest = self.degree, self.n, 0.0
+        for a, b in ((0, p), (0, n * p), (p, n * n - 1), (n * p, n * n - 1)):
+            turn = self.nodal_normal[:, b] - self.nodal_normal[:, a]
+            largest = max(largest, np.abs(((corners[:, b] - corners[:, a]) * turn).sum(1)).max() / (8 * p**2))
+        return largest
+
     def _smooth(self, corners):
         """(P2): nine points a face, the middles of edges on arcs."""
         points = np.zeros((len(corners), 9, 3))
         points[:, [0, 2, 6, 8]] = corners
-        self.bulge = 0.0
         for a, b, m in ((0, 1, 1), (0, 2, 3), (1, 3, 5), (2, 3, 7)):
             chord, na, nb = corners[:, b] - corners[:, a], self.nodal_normal[:, a], self.nodal_normal[:, b]
             length = np.linalg.norm(chord, axis=1)
             angle = np.arcsin(np.clip((chord * (nb - na)).sum(1) / (2 * length), -0.7, 0.7))
             rise = length / 2 * np.tan(angle / 2)
             points[:, m] = (corners[:, a] + corners[:, b]) / 2 + (rise / np.linalg.norm(na + nb, axis=1))[:, None] * (na + nb)
-            self.bulge = max(self.bulge, np.abs(rise).max())
         points[:, 4] = points[:, [1, 3, 5, 7]].sum(1) / 2 - points[:, [0, 2, 6, 8]].sum(1) / 4
         self.shape_degree, self.shape_points = 2, points
 

@@ -95,13 +95,19 @@ class State:
             pair.rows = pair.compute(v["normal"])
             pair.normal, pair.area = pair.rows.normal, pair.rows.area
             # without partner there is no jump; where only the history tells, the file does
-            pair.rows.g[~np.where(pair.rows.unsure, v["paired"] > 0.5, pair.rows.paired)] = 0
+            for rows in [pair.rows] + pair.rows.others:
+                rows.g[~np.where(rows.unsure, v["paired"] > 0.5, rows.paired)] = 0
         traction = v["friction_traction"] - v["CPRESS"][:, None] * v["normal"]
         pair.force = pair.area[:, None] * traction
         pair.scale = np.linalg.norm(pair.force, axis=1).sum()
         pair.pressure = -(traction * pair.normal).sum(1)
         pair.shear = traction + pair.pressure[:, None] * pair.normal
         return pair
+
+    def reference_size(self, pair):
+        """Mean size of the slave faces in the reference configuration."""
+        area = sum(part for _, _, part in self._integral(pair.slave.faces))
+        return np.sqrt(area).mean()
 
     def loads(self):
         """Forces (n, 3) of tractions and springs on the nodes."""

@@ -1,0 +1,76 @@
+"""The laws of integration points. They hold in the mean over closed points, and neither statuses nor multipliers of points are in a file:
+both are found again here, and must fit to what the files do say."""
+
+import numpy as np
+
+from geometry import shape
+
+# Of the largest pressure. Of the smaller mean face: closed points keep their distance in the mean alone.
+LAW, LAW_LOOPS, DEPTH = 1e-4, 2e-3, 0.01
+
+
+class Points:
+    """Of a pair (gaps.Pair with force, area) at one time. phi (q, nodes) over all slave nodes, w (q,) areas, d (q,) distances, positive
+    inside, -inf without partner, normal (q, 3); unsure (q,): only the history tells whether they have one."""
+
+    def __init__(self, pair):
+        self.d, f, xi, eta, self.w, self.found, self.unsure, self.normal = pair.integration_points()
+        self.phi = np.zeros((len(f), len(pair.nodes)))
+        np.put_along_axis(self.phi, pair.faces[f], shape(pair.degree, xi, eta)[0], axis=1)
+        self.weighted = self.w[:, None] * self.phi
+        self.turn = self.normal @ pair.normal.T  # cosines with the normals of the nodes
+
+
+def multipliers(points, pair, augmentation, found, regularised):
+    """Pressures of the nodes (raw, negative in compression) and statuses of the points (W4), (55, 56), (F3) that belong to the forces
+    of the nodes. Returns lambda at the points (q,), closed (q,), and by how much the laws are off [of the largest pressure] (k,)."""
+    d = np.where(found, points.d, 0)
+    normal_force = (pair.force * pair.normal).sum(1)
+    closed, best = found & (d > -1e-6 * pair.cell), (None, None, np.full(len(pair.nodes), np.inf))
+    largest = np.abs(pair.pressure).max()
+    for _ in range(20):
+        w = points.weighted
+        on = (w * closed[:, None] * points.turn).T @ points.phi
+        off = (w * ~closed[:, None]).T @ points.phi
+        gap = augmentation * (w * closed[:, None]).T @ d
+        push = augmentation * (w * closed[:, None] * points.turn).T @ d if regularised else 0
+        values = np.linalg.lstsq(on + off, normal_force - gap + push, rcond=1e-10)[0]
+        law = np.abs(off @ values + gap) / (pair.area * largest)
+        at = points.phi @ values
+        if law.max() < best[2].max():
+            best = at, closed, law
+        again = found & (at - augmentation * d <= 0)
+        if (again == closed).all():
+            break
+        closed = again
+    return best
+
+
+def check_points(find, state, pair, row):
+    """Depth of the points; Signorini's law in the mean; friction of each node at most what the pressures of its points allow."""
+    t, name, mu = state.t, pair.name, state.case.facts["mu"]
+    points = Points(pair)
+    sure = points.found & ~points.unsure
+    find.compare("penetration of integration points [cells]", points.d[sure] / pair.cell, DEPTH + (pair.slave.bulge + pair.master.bulge) / pair.cell, t, name)
+    largest = np.abs(pair.pressure).max()
+    if largest == 0:
+        return
+    materials = state.case.facts["materials"]
+    young = min(float(materials[int(pair.keys[f"{role} body"]) - 1]["Young's modulus"]) for role in ("Slave", "Master"))
+    tolerance = LAW if state.case.facts["loops"] == "newton" else LAW_LOOPS
+    augmentation = young / state.reference_size(pair)
+    trials = []
+    for regularised in (False, True)[: 1 + (int(row["regularised law"]) > 0)]:
+        for found in (points.found, sure)[: 1 + points.unsure.any()]:
+            trials.append((*multipliers(points, pair, augmentation, found, regularised), regularised))
+    values, closed, law, regularised = min(trials, key=lambda trial: trial[2].max())
+    # gaps are known to the last digits of positions; friction on a curved surface has a part along the normal of the node
+    blur = augmentation * state.noise / largest
+    near = closed[:, None] & (points.phi != 0)
+    bend = np.where(near, np.sqrt(np.maximum(1 - points.turn**2, 0)), 0).max(axis=0)
+    find.compare("law of integration points, beyond round-off", law - blur - mu * bend, tolerance, t, name)
+    push = closed * (values - (augmentation * np.where(closed, points.d, 0) if regularised else 0))
+    friction = pair.force - (points.weighted * push[:, None]).T @ points.normal
+    limit = np.abs(points.weighted).T @ (closed * mu * np.maximum(-values, 0))
+    beyond = (np.linalg.norm(friction, axis=1) - limit) / (pair.area * largest) - blur - mu * bend
+    find.compare("friction beyond that of the points", beyond, tolerance, t, name)
