@@ -12,32 +12,36 @@ TOLERANCE = 0.05  # Projection tolerance by default [face sizes]; sites that wer
 
 
 class Rows:
-    """Sites of a pair: distance (k,), normal (k, 3), area (k,), paired (k,), unsure (k,): nobody can tell without the history; g (k, n)
-    the jump operator on all nodes of the bodies, slave (n,) which of them are of the slave."""
+    """Sites of a pair: distance (k,), normal (k, 3), area (k,), paired (k,), unsure (k,): nobody can tell without the history; g
+    (k, n) the jump operator on all nodes of the bodies, slave (n,) which of them are of the slave."""
 
     def __init__(self, k, n):
         self.distance, self.normal, self.area = np.zeros(k), np.zeros((k, 3)), np.zeros(k)
         self.paired, self.unsure = np.zeros(k, bool), np.zeros(k, bool)
         self.g, self.slave = np.zeros((k, n)), np.zeros(n, bool)
-        self.others = []  # the same with other triangles
+        self.whole = self.area  # (k,) of the surface around a node, covered or not
+        self.others = []  # the same with other rules
 
     def jump(self, field):
-        """Of the sites (k, 3), of a field (n, 3) on the nodes; and how much other triangles change it (k,)."""
+        """Of the sites (k, 3), of a field (n, 3) on the nodes; and how much other rules change it (k,)."""
         jump = self.g @ field
         return jump, max_of([np.linalg.norm(other.g @ field - jump, axis=1) for other in self.others], len(jump))
 
     def force(self, on_slave):
-        """On all nodes (n, 3), of forces (k, 3) on the slave at its sites; and how much other triangles change it (n,)."""
+        """On all nodes (n, 3), of forces (k, 3) on the slave at its sites; and how much other rules change it (n,)."""
         force = self.g.T @ on_slave
         return force, max_of([np.linalg.norm(other.g.T @ on_slave - force, axis=1) for other in self.others], len(force))
 
     def spread(self):
-        """How much other triangles change the distance (k,)."""
-        return max_of([np.abs(other.distance - self.distance) for other in self.others], len(self.distance))
+        """How much other rules change distances (k,) and areas (k,)."""
+        k = len(self.distance)
+        return (max_of([np.abs(other.distance - self.distance) for other in self.others], k),
+                max_of([np.abs(other.area - self.area) for other in self.others], k))  # fmt: skip
 
 
 def max_of(fields, n):
-    return 2 * np.max(fields, axis=0) if fields else np.zeros(n)  # three ways do not show the largest difference
+    # the errors of two rules of the same degree are of the same size, not the same
+    return 4 * np.max(fields, axis=0) if fields else np.zeros(n)
 
 
 class Pair:
@@ -65,8 +69,8 @@ class Pair:
         return rows
 
     def compute(self, preferred):
-        """Rows of the slave nodes: their own jumps, or averaged ones (J1). preferred (k, 3): normals that decide where two faces are
-        equally near, or where only the history tells whether a node beyond the rim has a closest point."""
+        """Rows of the slave nodes: their own jumps, or averaged ones (J1). preferred (k, 3): normals that decide where two faces
+        are equally near, or where only the history tells whether a node beyond the rim has a closest point."""
         rows = self._empty()
         x = self.bodies.x[self.nodes]
         face, xi, eta, over, ties = self.master.closest(x, self.node_normal)
@@ -76,14 +80,21 @@ class Pair:
             choices = np.arange(len(x))[found], self.node_normal[found]
         else:
             choices = ties[0], -self.master.normal(*ties[1:], self.kind == "averaged")
+        if self.keys["Scheme"] == "integration point":  # frames of the multipliers alone
+            rows.normal[:] = self.node_normal
+            beyond = np.where(found & (over > 0.9 * TOLERANCE))[0]
+            use = found[choices[0]] & (over <= 2 * TOLERANCE)[choices[0]]
+            choose(rows.normal, preferred, np.concatenate([choices[0][use], beyond]),
+                   np.concatenate([choices[1][use], self.node_normal[beyond]]))  # fmt: skip
+            return rows
         if self.keys["Scheme"] == "averaged":
             if self.keys.get("Integration", "segment") == "face":
                 return self._averaged(rows, self._face_points(), found, over, choices, preferred)
-            # which triangles an overlap is cut into matters to the last digits of the rule: three ways show how much
+            # hats and warped faces are integrated by no rule exactly: other triangles and a finer rule show how much is left
             overlaps = Segments(self.slave, self.master, self.reach)
             self._averaged(rows, overlaps.points(0), found, over, choices, preferred)
-            for first in (1, 2):
-                rows.others.append(self._averaged(self._empty(), overlaps.points(first), found, over, choices, preferred))
+            for points in (overlaps.points(1), overlaps.points(0, fine=True)):
+                rows.others.append(self._averaged(self._empty(), points, found, over, choices, preferred))
             return rows
         rows.paired = found & (over <= TOLERANCE)
         rows.unsure = found & (over > 0.9 * TOLERANCE) & (over <= 2 * TOLERANCE)
@@ -124,8 +135,8 @@ class Pair:
         return kind, self.degree + 1 if kind == "Gauss" else 2 * self.degree + 1
 
     def integration_points(self):
-        """Distance, face, local coordinates, weights with area, whether they have a partner, whether that is unsure (n,), and normals
-        (n, 3) of the points of an integration point pair."""
+        """Distance, face, local coordinates, weights with area, whether they have a partner, whether that is unsure (n,), and
+        normals (n, 3) of the points of an integration point pair."""
         f, xi, eta, w, face, a, b, over = self.points(*self.point_rule(), 2 * TOLERANCE)
         hit = np.where(face >= 0)[0]
         distance, normal = np.full(len(f), -np.inf), self.slave.normal(f, xi, eta, True)
@@ -183,7 +194,7 @@ class Pair:
         np.add.at(normal, sites, (w[:, None] * hat)[:, :, None] * across[:, None])
         np.add.at(rows.g, (sites[:, :, None], self.slave.faces[f][:, None]), psi[:, :, None] * phi[:, None])
         np.add.at(rows.g, (sites[:, :, None], self.master.faces[m][:, None]), -psi[:, :, None] * theirs[:, None])
-        covered = rows.area / whole
+        covered, rows.whole = rows.area / whole, whole
         rows.paired, rows.unsure = covered > 0.02, np.abs(covered - 0.02) < 0.001
         rows.g[~rows.paired] = 0
         on = np.where(rows.paired)[0]
@@ -251,11 +262,11 @@ class Segments:
             near &= (shadow[..., c].max(2) > flat[..., c].min(1)[:, None]) & (shadow[..., c].min(2) < flat[..., c].max(1)[:, None])
         self.polygons = [(s, m, clip(flat[s], shadow[s, m][::-1])) for s, m in zip(*np.where(near))]
 
-    def points(self, first):
-        """Points on triangles around corner `first` of each overlap: f, xi, eta, w (without element of area), master face, xi', eta'; and
-        the covered fraction of each slave face."""
+    def points(self, first, fine=False):
+        """Points on triangles around corner `first` of each overlap: f, xi, eta, w (without element of area), master face, xi', eta';
+        and the covered fraction of each slave face."""
         slave, master, p = self.slave, self.master, self.slave.degree
-        rule, weight = geometry.triangle_rule(p)
+        rule, weight = geometry.triangle_rule(p, fine)
         cell, other, at, area = [], [], [], []
         for s, m, polygon in self.polygons:
             polygon = polygon[first % max(len(polygon), 1) :] + polygon[: first % max(len(polygon), 1)]
@@ -306,8 +317,8 @@ def clip(window, polygon):
 
 
 def invert(at, points, degree, axes, origin, start):
-    """Local coordinates at which faces (points (q, nodes, 3)) are seen at places `at` (q, 2) of planes; the area in the plane over that
-    in local coordinates; whether that was found."""
+    """Local coordinates at which faces (points (q, nodes, 3)) are seen at places `at` (q, 2) of planes; the area in the plane over
+    that in local coordinates; whether that was found."""
     flat = np.einsum("qac,qnc->qna", axes, points - origin[:, None])
     xi, eta = start[:, 0].copy(), start[:, 1].copy()
     for _ in range(30):

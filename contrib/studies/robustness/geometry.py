@@ -19,8 +19,8 @@ _RULES = {1: ([(0.223381589678011, 0.445948490915965), (0.109951743655322, 0.091
               (0.027230314174435, 0.263112829634638, 0.008394777409958))}  # fmt: skip
 
 
-def triangle_rule(degree):
-    """Points (n, 2) and weights (n,) with sum 1, on the triangle (0,0), (1,0), (0,1)."""
+def triangle_rule(degree, fine=False):
+    """Points (n, 2) and weights (n,) with sum 1, on the triangle (0,0), (1,0), (0,1); fine: on each quarter of it."""
     orbits, centre, general = _RULES[degree]
     points, weights = [], []
     for weight, a in orbits:
@@ -30,7 +30,11 @@ def triangle_rule(degree):
         weight, a, b = general
         points += [(1 / 3, 1 / 3)] + [(s, t) for s in (a, b, 1 - a - b) for t in (a, b, 1 - a - b) if s != t]
         weights += [centre] + [weight] * 6
-    return np.array(points), np.array(weights)
+    points, weights = np.array(points), np.array(weights)
+    if not fine:
+        return points, weights
+    quarters = [(points + corner) / 2 for corner in ([0, 0], [1, 0], [0, 1])] + [(1 - points) / 2]
+    return np.concatenate(quarters), np.tile(weights / 4, 4)
 
 
 def line_rule(kind, n):
@@ -129,7 +133,8 @@ class Surface:
         self.size = np.sqrt(np.linalg.norm(centre_area, axis=1))
         self.centre_normal = centre_area / self.size[:, None] ** 2
         grid = self.faces.reshape(-1, n, n)
-        edges = np.stack([grid[:, [0, -1], [0, 0]], grid[:, [0, -1], [-1, -1]], grid[:, [0, 0], [0, -1]], grid[:, [-1, -1], [0, -1]]], 1)
+        ends = (([0, -1], [0, 0]), ([0, -1], [-1, -1]), ([0, 0], [0, -1]), ([-1, -1], [0, -1]))
+        edges = np.stack([grid[:, eta, xi] for eta, xi in ends], 1)
         _, edge, count = np.unique(np.sort(edges, 2).reshape(-1, 2), axis=0, return_inverse=True, return_counts=True)
         self.rim = count[edge.ravel()].reshape(-1, 4) == 1  # edges at xi = 0, xi = 1, eta = 0, eta = 1
 
@@ -186,8 +191,8 @@ class Surface:
 
     def closest(self, p, normal):
         """Closest points of faces that do not look along `normal` (far sides). p, normal: (n, 3). Returns face (-1: none), xi, eta,
-        how far the point hangs over the rim [face sizes], (n,) each; and ties, which single precision does not tell apart: point, face,
-        xi, eta."""
+        how far the point hangs over the rim [face sizes], (n,) each; and ties, which single precision does not tell apart: point,
+        face, xi, eta."""
         ties = []
         face, xi, eta = np.full(len(p), -1), np.zeros(len(p)), np.zeros(len(p))
         middle = np.full(len(self.faces), 0.5)
@@ -247,7 +252,8 @@ class Surface:
         corner = lambda i, j: self.at(f, np.full(len(f), i / n), np.full(len(f), j / n))[0]
         for i in range(n):
             for j in range(n):
-                quads.append(np.stack([corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1), corner(i + 0.5, j + 0.5)], 1))
+                places = ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1), (i + 0.5, j + 0.5))
+                quads.append(np.stack([corner(*place) for place in places], 1))
         quads = np.concatenate(quads)
         return np.concatenate([quads[:, [i, (i + 1) % 4, 4]] for i in range(4)])
 
