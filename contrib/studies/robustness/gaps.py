@@ -89,7 +89,11 @@ class Pair:
             return rows
         if self.keys["Scheme"] == "averaged":
             if self.keys.get("Integration", "segment") == "face":
-                return self._averaged(rows, self._face_points(), found, over, choices, preferred)
+                self._averaged(rows, self._face_points(TOLERANCE, 0), found, over, choices, preferred)
+                for change in (1e-4, -1e-4):  # single precision does not tell whether points at the rim have a partner
+                    points = self._face_points((1 + change) * TOLERANCE, max(change * TOLERANCE, 0))
+                    rows.others.append(self._averaged(self._empty(), points, found, over, choices, preferred))
+                return rows
             # hats and warped faces are integrated by no rule exactly: other triangles and a finer rule show how much is left
             overlaps = Segments(self.slave, self.master, self.reach)
             self._averaged(rows, overlaps.points(0), found, over, choices, preferred)
@@ -146,15 +150,16 @@ class Pair:
         distance[hit] = (apart * normal[hit]).sum(1)
         return distance, f, xi, eta, w * self.slave.element(f, xi, eta), face >= 0, (face >= 0) & (over > 0.9 * TOLERANCE), normal
 
-    def _face_points(self):
-        """Points of a fixed rule on all faces that have some, and the covered fraction of each face."""
+    def _face_points(self, tolerance, rim):
+        """Points of a fixed rule on all faces that have some, and the covered fraction of each face. Points may hang over the rim by
+        a tolerance if some of the face do so by no more than `rim`."""
         rule = "Gauss", 6 if self.degree == 1 else 10
-        f, s, t, w, m, a, b, over = self.points(*rule, TOLERANCE)
+        f, s, t, w, m, a, b, over = self.points(*rule, tolerance)
         _, t1, t2 = self.slave.at(f, s, t)
         part = w * np.linalg.norm(np.cross(t1, t2), axis=1)
         coverage = np.bincount(f, part * (m >= 0), len(self.faces)) / np.bincount(f, part, len(self.faces))
         inside = np.zeros(len(self.faces), bool)  # a face with nothing but overhang has no points
-        inside[f[(m >= 0) & (over == 0)]] = True
+        inside[f[(m >= 0) & (over <= rim)]] = True
         coverage[~inside] = 0
         keep = (m >= 0) & inside[f]
         return [v[keep] for v in (f, s, t, w, m, a, b)] + [coverage]

@@ -60,7 +60,7 @@ def check_points(find, state, pair, row):
         return
     materials = state.case.facts["materials"]
     young = min(float(materials[int(pair.keys[f"{role} body"]) - 1]["Young's modulus"]) for role in ("Slave", "Master"))
-    tolerance = LAW if state.case.facts["loops"] == "newton" else LAW_LOOPS
+    tolerance = LAW_LOOPS if state.fixed_point else LAW
     augmentation = young / state.reference_size(pair)
     trials = []
     for regularised in (False, True)[: 1 + (int(row["regularised law"]) > 0)]:
@@ -71,6 +71,8 @@ def check_points(find, state, pair, row):
     blur = augmentation * state.noise / largest
     near = closed[:, None] & (points.phi != 0)
     bend = np.where(near, np.sqrt(np.maximum(1 - points.turn**2, 0)), 0).max(axis=0)
+    bend = ((points.phi != 0).T @ (points.phi != 0).astype(float) > 0) * bend[None]  # the multipliers of a face go together
+    bend = bend.max(axis=1)
     find.compare("law of integration points, beyond round-off", law - blur - mu * bend, tolerance, t, name)
     push = closed * (values - (augmentation * np.where(closed, points.d, 0) if regularised else 0))
     friction = pair.force - (points.weighted * push[:, None]).T @ points.normal

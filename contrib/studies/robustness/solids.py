@@ -94,11 +94,11 @@ class Solid:
         return force, (self.volume * energy).sum()
 
 
-def check_equilibrium(find, state, row_of):
+def check_equilibrium(find, state, row_of, step):
     """Balance of each node under stresses, loads, springs and contact (B1); reactions of each condition. row_of: condition -> its
-    force in reactions.csv. What single precision leaves is measured: forces at displacements changed by their last digit."""
+    force in reactions.csv; step: the largest displacement in the increment. What single precision leaves is measured: forces at displacements changed by their last digit."""
     t, u, bodies, case = state.t, state.u, state.bodies, state.case
-    tolerance = NODES if case.facts["loops"] == "newton" else NODES_LOOPS
+    tolerance = NODES_LOOPS if state.fixed_point else NODES
     internal, noise, stored, blur = np.zeros_like(u), np.zeros(len(u)), 0.0, 0.0
     random = np.random.default_rng(1).uniform(-1, 1, u.shape) * geometry.SINGLE
     for b, (material, mean) in enumerate(zip(case.facts["materials"], case.facts["mean dilatation"]), 1):
@@ -121,7 +121,9 @@ def check_equilibrium(find, state, row_of):
             loose, _ = pair.rows.force(pair.force * (pair.area_spread / pair.area)[:, None])
             contact, noise = contact + force, noise + spread + np.linalg.norm(loose, axis=1)
     missing = internal - state.loads() - contact  # what reactions do
-    scale = max(np.linalg.norm(internal, axis=1).max(), np.linalg.norm(contact, axis=1).max())
+    # forces below 1e-5 of those that hold the softest body in its place are none to the program either (theory.md, 22)
+    floor = 1e-5 * min(float(m["Young's modulus"]) for m in case.facts["materials"]) * min(p.cell for p in state.pairs) * step
+    scale = max(np.linalg.norm(internal, axis=1).max(), np.linalg.norm(contact, axis=1).max(), floor)
     held = np.zeros(len(u), bool)
     for c in case.conditions:
         if c["Type"] == "displacement":
