@@ -89,9 +89,10 @@ class Pair:
             return rows
         if self.keys["Scheme"] == "averaged":
             if self.keys.get("Integration", "segment") == "face":
-                self._averaged(rows, self._face_points(TOLERANCE, 0), found, over, choices, preferred)
-                for change in (1e-4, -1e-4):  # single precision does not tell whether points at the rim have a partner
-                    points = self._face_points((1 + change) * TOLERANCE, max(change * TOLERANCE, 0))
+                self._averaged(rows, self._face_points(TOLERANCE, 0, False), found, over, choices, preferred)
+                # single precision does not tell whether points at the rim have a partner, and on which of two faces
+                for change, last in ((1e-4, False), (-1e-4, False), (0, True)):
+                    points = self._face_points((1 + change) * TOLERANCE, max(change * TOLERANCE, 0), last)
                     rows.others.append(self._averaged(self._empty(), points, found, over, choices, preferred))
                 return rows
             # hats and warped faces are integrated by no rule exactly: other triangles and a finer rule show how much is left
@@ -121,7 +122,7 @@ class Pair:
         part = w[:, None] * self.slave.element(f, xi, eta)[:, None] * shape(self.degree, xi, eta)[0]
         np.add.at(area, self.faces[f], part)
 
-    def points(self, kind, n, tolerance):
+    def points(self, kind, n, tolerance, last=False):
         """Points of a fixed rule on all slave faces with their closest master points: f, xi, eta, w, face, xi', eta', overhang;
         face -1 where there is none."""
         xi, eta, w = geometry.square_rule(kind, n)
@@ -129,7 +130,7 @@ class Pair:
         xi, eta, w = (np.tile(v, len(self.faces)) for v in (xi, eta, w))
         x = self.slave.at(f, xi, eta)[0]
         averaged = self.keys["Scheme"] == "integration point"
-        face, a, b, over, _ = self.master.closest(x, self.slave.normal(f, xi, eta, averaged))
+        face, a, b, over, _ = self.master.closest(x, self.slave.normal(f, xi, eta, averaged), last)
         far = np.linalg.norm(x - self.master.at(face, a, b)[0], axis=1) > self.reach
         face[far | (over > tolerance)] = -1
         return f, xi, eta, w, face, a, b, over
@@ -150,11 +151,11 @@ class Pair:
         distance[hit] = (apart * normal[hit]).sum(1)
         return distance, f, xi, eta, w * self.slave.element(f, xi, eta), face >= 0, (face >= 0) & (over > 0.9 * TOLERANCE), normal
 
-    def _face_points(self, tolerance, rim):
+    def _face_points(self, tolerance, rim, last):
         """Points of a fixed rule on all faces that have some, and the covered fraction of each face. Points may hang over the rim by
         a tolerance if some of the face do so by no more than `rim`."""
         rule = "Gauss", 6 if self.degree == 1 else 10
-        f, s, t, w, m, a, b, over = self.points(*rule, tolerance)
+        f, s, t, w, m, a, b, over = self.points(*rule, tolerance, last)
         _, t1, t2 = self.slave.at(f, s, t)
         part = w * np.linalg.norm(np.cross(t1, t2), axis=1)
         coverage = np.bincount(f, part * (m >= 0), len(self.faces)) / np.bincount(f, part, len(self.faces))

@@ -189,10 +189,10 @@ class Surface:
             n = np.cross(t1, t2)
         return n / np.linalg.norm(n, axis=1)[:, None]
 
-    def closest(self, p, normal):
+    def closest(self, p, normal, last=False):
         """Closest points of faces that do not look along `normal` (far sides). p, normal: (n, 3). Returns face (-1: none), xi, eta,
         how far the point hangs over the rim [face sizes], (n,) each; and ties, which single precision does not tell apart: point,
-        face, xi, eta."""
+        face, xi, eta. Of these the first face is taken, or the last one."""
         ties = []
         face, xi, eta = np.full(len(p), -1), np.zeros(len(p)), np.zeros(len(p))
         middle = np.full(len(self.faces), 0.5)
@@ -206,11 +206,11 @@ class Surface:
             q, f = q[np.isfinite(distance[q, f])], f[np.isfinite(distance[q, f])]
             s, t = self._project(p[part][q], f)
             away = np.linalg.norm(p[part][q] - self.at(f, s, t)[0], axis=1)
-            order = np.lexsort((f, away, q))
-            best = order[np.unique(q[order], return_index=True)[1]]
             nearest = np.full(len(p), np.inf)
-            nearest[q[best]] = away[best]
-            tie = away <= nearest[q] + 1e-5 * self.size.mean()
+            np.minimum.at(nearest, q, away)
+            tie = away <= nearest[q] + 2e-6 * self.size.mean()
+            order = np.lexsort((-f if last else f, ~tie, q))
+            best = order[np.unique(q[order], return_index=True)[1]]
             ties.append(np.stack([start + q[tie], f[tie], s[tie], t[tie]]))
             face[start + q[best]], xi[start + q[best]], eta[start + q[best]] = f[best], s[best], t[best]
         over = np.zeros(len(p))
