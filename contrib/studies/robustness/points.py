@@ -5,7 +5,7 @@ import numpy as np
 
 from geometry import shape
 
-# Of the largest pressure: what Newton leaves (1e-5), a geometry loop (theory.md, 34; 1.7e-4). Of the smaller mean face, beyond the
+# Of the largest pressure: what Newton leaves (2.3e-6), a geometry loop (theory.md, 34; 1.7e-4). Of the smaller mean face, beyond the
 # bulges of both surfaces: closed points keep their distance in the mean alone (0.024).
 LAW, LAW_LOOPS, DEPTH = 1e-4, 2e-3, 0.05
 

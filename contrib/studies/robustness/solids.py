@@ -96,7 +96,8 @@ class Solid:
 
 def check_equilibrium(find, state, row_of, step):
     """Balance of each node under stresses, loads, springs and contact (B1); reactions of each condition. row_of: condition -> its
-    force in reactions.csv; step: the largest displacement in the increment. What single precision leaves is measured: forces at displacements changed by their last digit."""
+    force in reactions.csv; step: the largest displacement in the increment. What single precision leaves is measured:
+    forces at displacements changed by their last digit."""
     t, u, bodies, case = state.t, state.u, state.bodies, state.case
     tolerance = NODES_LOOPS if state.fixed_point else NODES
     internal, noise, stored, blur = np.zeros_like(u), np.zeros(len(u)), 0.0, 0.0
