@@ -90,7 +90,8 @@ class Bodies:
     def __init__(self, mesh, scale):
         keys = [clusters(mesh.reference[:, c], 4e-6 * scale) for c in range(3)] + [np.round(mesh.fields["body"]).astype(int)]
         _, first, node = np.unique(np.column_stack(keys), axis=0, return_index=True, return_inverse=True)
-        self.node = node.ravel()
+        # in the order of the file, the same at all times: labels are not where coordinates differ by round-off alone
+        self.node, first = np.argsort(np.argsort(first))[node.ravel()], np.sort(first)
         self.x, self.X, self.body = mesh.points[first], mesh.reference[first], keys[3][first]
         self.degree = mesh.cells.shape[1] - 1
         self.cells = c = self.node[mesh.cells]
