@@ -168,9 +168,14 @@ namespace Nodus
     for_entries([&](const DoFIndex i, DoFIndex, double) { ++begin[i + 1]; });
     for (int i = 0; i < size_; ++i)
       begin[i + 1] += begin[i];
-    std::vector<std::pair<int, double>> entries(begin[size_]);
-    std::vector<std::size_t>            next(begin.begin(), begin.end() - 1);
-    bool                                finite = true;
+    struct Entry
+    {
+      int    column;
+      double value;
+    };
+    const std::unique_ptr<Entry[]> entries(new Entry[begin[size_]]); // all are written to: no zeros first
+    std::vector<std::size_t>       next(begin.begin(), begin.end() - 1);
+    bool                           finite = true;
     for_entries(
         [&](const DoFIndex i, const DoFIndex j, const double v)
         {
@@ -180,31 +185,35 @@ namespace Nodus
         });
 
     // MUMPS adds up entries of one place, but contact has many of them, and it keeps them all.
-    constexpr std::size_t    nowhere = std::numeric_limits<std::size_t>::max();
-    std::vector<std::size_t> place(size_, nowhere); // of each column in the present row
-    std::vector<int>         row, column;
-    value_.clear();
+    std::vector<std::size_t> place(size_, 0); // of each column, from 1; in the present row where it is beyond its first
+    std::size_t              n = 0;
     for (int i = 0; i < size_; ++i)
     {
-      const std::size_t first = value_.size();
+      const std::size_t first = n, end = begin[i + 1];
+      for (std::size_t k = begin[i]; k < end; ++k)
+        if (const Entry entry = entries[k]; place[entry.column] > first)
+          entries[place[entry.column] - 1].value += entry.value;
+        else
+        {
+          entries[n]          = entry;
+          place[entry.column] = ++n;
+        }
+      begin[i] = first;
+    }
+    begin[size_] = n;
+
+    bool changed = n != value_.size();
+    row_.resize(n);
+    column_.resize(n);
+    value_.resize(n);
+    for (int i = 0; i < size_; ++i)
       for (std::size_t k = begin[i]; k < begin[i + 1]; ++k)
       {
-        const auto &[j, v] = entries[k];
-        if (place[j] == nowhere)
-        {
-          place[j] = value_.size();
-          row.push_back(i + 1);
-          column.push_back(j + 1);
-          value_.push_back(0.);
-        }
-        value_[place[j]] += v;
+        changed    = changed || row_[k] != i + 1 || column_[k] != entries[k].column + 1;
+        row_[k]    = i + 1;
+        column_[k] = entries[k].column + 1;
+        value_[k]  = entries[k].value;
       }
-      for (std::size_t k = first; k < value_.size(); ++k)
-        place[column[k] - 1] = nowhere;
-    }
-    const bool changed = row != row_ || column != column_;
-    row_.swap(row);
-    column_.swap(column);
     if (dealii::Utilities::MPI::max(finite ? 0 : 1, communicator_) != 0)
       throw SolverFailure("Direct solver: the matrix holds a value that is not finite",
                           SolverFailure::Kind::not_finite);
