@@ -50,6 +50,7 @@ namespace Nodus
     FixedPointLoop geometry("geometry", model_.parameters.geometry_loop);
     AndersonMixing mixing(model_.communicator);
     geometry_cycles_ = 0;
+    rest_            = 0.;
     do
     {
       pair();
@@ -93,6 +94,7 @@ namespace Nodus
                    heed_signals_();
                    counts.newton += iteration > 0;
                    corrections_ += iteration > 0;
+                   other_statuses_ = other_statuses_ || (iteration > 0 && norms.changes > 0);
                    if (iteration == 0 && pass.threshold == 1 && pass.status == 1)
                      renewed_ = std::max(norms.force, norms.contact);
                    counts.krylov += krylov;
@@ -103,10 +105,11 @@ namespace Nodus
 
   void IncrementLoops::pair()
   {
-    paired_before_ = paired_;
-    paired_        = states_.now.unknowns.block(0);
-    rigid_paired_  = states_.now.rigid;
-    corrections_   = 0;
+    paired_before_  = paired_;
+    paired_         = states_.now.unknowns.block(0);
+    rigid_paired_   = states_.now.rigid;
+    corrections_    = 0;
+    other_statuses_ = false;
     equilibrium_.pair();
   }
 
@@ -122,6 +125,7 @@ namespace Nodus
       return true;
     const Equilibrium::StatusChanges update = equilibrium_.update_statuses();
     journal_.tables->add_status_changes(update.changes);
+    other_statuses_ = other_statuses_ || update.changes > 0;
     note_pass(loop, update.changes, update.first);
     if (update.frozen > 0)
       journal_.console.remark("the statuses cycle: " + std::to_string(update.frozen) +
@@ -200,19 +204,22 @@ namespace Nodus
     Vector                &u        = states_.now.unknowns.block(0);
     std::string            worst;
     const double           change = largest_difference(surfaces, u, paired_, &worst);
-    // what the solution of the pass before leaves out of balance with the geometry that it leads to
+    // what the solution of the pass before leaves out of balance with the geometry that it leads to; that of this pass
+    // may be far from it where statuses have changed
     const bool   first = loop.counter() == 0;
-    const double value = corrections_ == 0 ? 0. : first ? std::max(1., renewed_) : renewed_;
+    const double value = corrections_ == 0 ? 0. : first || other_statuses_ ? std::max(1., renewed_) : renewed_;
 
     journal_.console.remark(
         first
             ? "geometry: of the last increment so far; it changes most at " + worst
-            : text("geometry: renewed, the last pass left ", renewed_, " out of balance; it changes most at ", worst));
+            : text("geometry: renewed, the last pass left ", renewed_, " out of balance; it changes most at ", worst) +
+                  (other_statuses_ ? ", and statuses change" : ""));
     note_pass(loop, value, worst);
     const double before = loop.value();
     const bool   last   = loop.counter() + 1 >= model_.parameters.geometry_loop.maximum_passes;
     if (last && value > loop.tolerance() && value <= tolerated_rest(loop.tolerance()))
     {
+      rest_ = value;
       journal_.console.remark(text("warning: the geometry loop ends with forces and contact laws off by ", value));
       return true;
     }

@@ -25,6 +25,12 @@ namespace Nodus
     /// Solves from the state at hand, with the loops merged as Equilibrium::begin_attempt() said. @throws SolverFailure
     void solve();
 
+    /// What the geometry loop of the last solve() has left out of balance, with a warning; 0 where it has settled.
+    double rest() const
+    {
+      return rest_;
+    }
+
   private:
     void                pair();
     void                iterate(const Newton &newton);
@@ -42,11 +48,13 @@ namespace Nodus
     States                         &states_;
     Equilibrium                    &equilibrium_;
     std::function<void()>           heed_signals_;
-    Vector                          paired_, paired_before_; ///< displacements of this and the previous pairing
-    std::vector<RigidBodies::State> rigid_paired_;           ///< at this pairing
-    unsigned int                    geometry_cycles_ = 0;    ///< with period 2, in the geometry loop at hand
-    double                          renewed_         = 0.;   ///< norm that this pass of the geometry loop began with
-    unsigned int                    corrections_     = 0;    ///< of Newton, in this pass
+    Vector                          paired_, paired_before_;  ///< displacements of this and the previous pairing
+    std::vector<RigidBodies::State> rigid_paired_;            ///< at this pairing
+    unsigned int                    geometry_cycles_ = 0;     ///< with period 2, in the geometry loop at hand
+    double                          renewed_         = 0.;    ///< norm that this pass of the geometry loop began with
+    double                          rest_            = 0.;    ///< see rest()
+    unsigned int                    corrections_     = 0;     ///< of Newton, in this pass
+    bool                            other_statuses_  = false; ///< than this pass began with
   };
 } // namespace Nodus
 

@@ -106,8 +106,9 @@ namespace Nodus
     smaller_face_.clear();
   }
 
-  Verdict Judge::judge()
+  Verdict Judge::judge(const double rest)
   {
+    rest_ = rest;
     if (!contact_)
       set_up();
     Verdict verdict;
@@ -170,13 +171,14 @@ namespace Nodus
     length_ = std::max(largest_entry(moved), model_.length_scale);
   }
 
-  /// Of forces and laws: a geometry loop may leave more than its tolerance.
+  /// Of forces and laws: a geometry loop that does not settle may leave more than Newton's method.
   double Judge::tolerance(const double of_newton) const
   {
-    const bool loop = !equilibrium_.merged().geometry; // with once the geometry does not change
+    const double of_loop = model_.parameters.geometry_loop.tolerance;
     return std::max({allowance * of_newton,
                      ambiguity,
-                     loop ? 2. * IncrementLoops::tolerated_rest(model_.parameters.geometry_loop.tolerance) : 0.});
+                     equilibrium_.merged().geometry ? 0. : allowance * of_loop,
+                     rest_ > 0. ? 2. * IncrementLoops::tolerated_rest(of_loop) : 0.});
   }
 
   void Judge::measure_numbers(Verdict &verdict) const

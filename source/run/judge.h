@@ -22,8 +22,9 @@ namespace Nodus
 
     /// The mesh has changed.
     void begin_on_mesh();
-    /// Of the state at hand at the end of the increment at hand. Collective.
-    Verdict judge();
+    /// Of the state at hand at the end of the increment at hand. @p rest: whether a geometry loop has left something
+    /// out of balance, and said so (IncrementLoops::rest()). Collective.
+    Verdict judge(double rest = 0.);
 
   private:
     void   set_up();
@@ -45,6 +46,7 @@ namespace Nodus
     BlockVector                       unknowns_;
     std::vector<double>               larger_face_, smaller_face_; ///< mean ones of the sides of each pair [length]
     double                            length_ = 0.; ///< of the step, that gaps and slips are measured against
+    double                            rest_   = 0.; ///< of the geometry loop
   };
 } // namespace Nodus
 

@@ -104,7 +104,7 @@ namespace Nodus
   {
     Journal       &journal = parts_.journal;
     const auto     timer   = journal.profile.time(Phase::judgement);
-    const Verdict &verdict = journal.verdict = judge_.judge();
+    const Verdict &verdict = journal.verdict = judge_.judge(parts_.strategy.geometry_rest());
     if (const Measure worst = verdict.worst();
         !verdict.holds() && (worst == Measure::held_depth || worst == Measure::held_slip))
       throw SolverFailure(

@@ -36,6 +36,12 @@ namespace Nodus
     /// state: all smaller increments begin with it, too. Collective.
     bool begins_singular() const;
 
+    /// IncrementLoops::rest() of the last attempt.
+    double geometry_rest() const
+    {
+      return loops_.rest();
+    }
+
   private:
     void run(const Attempt &attempt);
 

@@ -12,6 +12,7 @@ import argparse
 import collections
 import concurrent.futures
 import csv
+import functools
 import json
 import math
 import os
@@ -410,8 +411,9 @@ def main():
             print(RandomCase(options.seed, n).write("random_cases"))
         return
     rows = []
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for row in pool.map(lambda n: run_case(options, n), numbers):
+    # processes: OpenBLAS without threads of its own, on which checks stand, is not safe to call from several
+    with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
+        for row in pool.map(functools.partial(run_case, options), numbers):
             rows.append(row)
             state = "finished" if row["exit"] == 0 else f"exit {row['exit']} ({row['cause']})"
             print(f"{row['case']:4d} {row['shape']}, {row['scheme']}, degree {row['degree']}, mu {row['mu']}, {row['loops']}, "
