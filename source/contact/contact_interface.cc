@@ -151,6 +151,12 @@ namespace Nodus
     gather(unknowns, start);
   }
 
+  void ContactInterface::take_laws(const ContactInterface &other)
+  {
+    status_.take_laws(other.status_);
+    pairing_.set_partnered(other.pairing_.partnered());
+  }
+
   /// Projections, frames, jump operator and surface weights at the current positions.
   void ContactInterface::freeze_geometry()
   {

@@ -61,6 +61,9 @@ namespace Nodus
     double visible_part(const Vector &from, const Vector &to) const;
     /// The state that this refers to has been set to another one, to which @p unknowns belong.
     void resume(const BlockVector &unknowns, const Vector &start);
+    /// What @p other solves now, of the same mesh: its laws (Status::take_laws), and which sites have a partner before
+    /// the next projection.
+    void take_laws(const ContactInterface &other);
 
     /// Pairs with friction at all, with thresholds that follow the pressure.
     bool has_friction() const

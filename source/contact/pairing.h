@@ -44,6 +44,10 @@ namespace Nodus
     {
       partnered_ = std::move(partnered);
     }
+    const std::vector<char> &partnered() const
+    {
+      return partnered_;
+    }
 
     const SitePairing &operator[](const unsigned int site) const
     {

@@ -151,7 +151,6 @@ namespace Nodus
       had_friction_[k] = friction(k);
   }
 
-  /// Statuses of the local sites as one vector.
   std::vector<char> Status::code() const
   {
     std::vector<char> c(now_.contact.size());

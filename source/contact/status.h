@@ -239,6 +239,9 @@ namespace Nodus
       return violation(input, frozen_);
     }
 
+    /// Statuses of the local sites as one vector, to be compared with that of another time.
+    std::vector<char> code() const;
+
     /// The state that it refers to has been set to another one: what follows from it is found anew. Collective.
     void resume()
     {
@@ -269,12 +272,11 @@ namespace Nodus
     {
       return pairs_[pair].start.overclosure == ContactPairParameters::InitialOverclosure::interference;
     }
-    bool              can_project(unsigned int pair) const;
-    bool              can_lump(unsigned int pair) const;
-    bool              can_regularise() const;
-    void              update_floor();
-    void              note_friction();
-    std::vector<char> code() const;
+    bool can_project(unsigned int pair) const;
+    bool can_lump(unsigned int pair) const;
+    bool can_regularise() const;
+    void update_floor();
+    void note_friction();
     /// How a site contradicts its status, and by how much: relative to @p pressure of the pair, or to the cone.
     Contradiction       contradiction(const StatusInput &input, unsigned int site, double pressure, double &size) const;
     std::vector<double> largest_pressures(const StatusInput &input) const;

@@ -2,6 +2,8 @@
 #include "base/text.h"
 #include "contact/loci.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -94,7 +96,6 @@ namespace Nodus
                    heed_signals_();
                    counts.newton += iteration > 0;
                    corrections_ += iteration > 0;
-                   other_statuses_ = other_statuses_ || (iteration > 0 && norms.changes > 0);
                    if (iteration == 0 && pass.threshold == 1 && pass.status == 1)
                      renewed_ = std::max(norms.force, norms.contact);
                    counts.krylov += krylov;
@@ -105,12 +106,22 @@ namespace Nodus
 
   void IncrementLoops::pair()
   {
-    paired_before_  = paired_;
-    paired_         = states_.now.unknowns.block(0);
-    rigid_paired_   = states_.now.rigid;
-    corrections_    = 0;
-    other_statuses_ = false;
+    paired_before_ = paired_;
+    paired_        = states_.now.unknowns.block(0);
+    rigid_paired_  = states_.now.rigid;
+    corrections_   = 0;
     equilibrium_.pair();
+    statuses_ = model_.contact->status().code();
+  }
+
+  /// Than this pass began with, on any rank.
+  bool IncrementLoops::has_other_statuses() const
+  {
+    const std::vector<char> now   = model_.contact->status().code();
+    unsigned int            other = 0;
+    for (unsigned int s = 0; s < now.size(); ++s)
+      other += model_.contact->surfaces().is_owned(s) && now[s] != statuses_[s];
+    return dealii::Utilities::MPI::max(other, model_.communicator) > 0;
   }
 
   void IncrementLoops::note_pass(const FixedPointLoop &loop, const double value, const std::string &worst)
@@ -125,7 +136,6 @@ namespace Nodus
       return true;
     const Equilibrium::StatusChanges update = equilibrium_.update_statuses();
     journal_.tables->add_status_changes(update.changes);
-    other_statuses_ = other_statuses_ || update.changes > 0;
     note_pass(loop, update.changes, update.first);
     if (update.frozen > 0)
       journal_.console.remark("the statuses cycle: " + std::to_string(update.frozen) +
@@ -206,14 +216,14 @@ namespace Nodus
     const double           change = largest_difference(surfaces, u, paired_, &worst);
     // what the solution of the pass before leaves out of balance with the geometry that it leads to; that of this pass
     // may be far from it where statuses have changed
-    const bool   first = loop.counter() == 0;
-    const double value = corrections_ == 0 ? 0. : first || other_statuses_ ? std::max(1., renewed_) : renewed_;
+    const bool   first = loop.counter() == 0, other = has_other_statuses();
+    const double value = corrections_ == 0 ? 0. : first || other ? std::max(1., renewed_) : renewed_;
 
     journal_.console.remark(
         first
             ? "geometry: of the last increment so far; it changes most at " + worst
             : text("geometry: renewed, the last pass left ", renewed_, " out of balance; it changes most at ", worst) +
-                  (other_statuses_ ? ", and statuses change" : ""));
+                  (other ? ", and statuses change" : ""));
     note_pass(loop, value, worst);
     const double before = loop.value();
     const bool   last   = loop.counter() + 1 >= model_.parameters.geometry_loop.maximum_passes;

@@ -38,6 +38,7 @@ namespace Nodus
     bool                threshold_converged(FixedPointLoop &loop, AndersonMixing &mixing);
     bool                statuses_converged(FixedPointLoop &loop);
     void                check_frozen_statuses();
+    bool                has_other_statuses() const;
     void                start_from_mixed(const AndersonMixing &mixing);
     bool                uses(Remedy remedy) const;
     std::vector<double> geometry_values(const Vector &u, const std::vector<RigidBodies::State> &rigid) const;
@@ -48,13 +49,13 @@ namespace Nodus
     States                         &states_;
     Equilibrium                    &equilibrium_;
     std::function<void()>           heed_signals_;
-    Vector                          paired_, paired_before_;  ///< displacements of this and the previous pairing
-    std::vector<RigidBodies::State> rigid_paired_;            ///< at this pairing
-    unsigned int                    geometry_cycles_ = 0;     ///< with period 2, in the geometry loop at hand
-    double                          renewed_         = 0.;    ///< norm that this pass of the geometry loop began with
-    double                          rest_            = 0.;    ///< see rest()
-    unsigned int                    corrections_     = 0;     ///< of Newton, in this pass
-    bool                            other_statuses_  = false; ///< than this pass began with
+    Vector                          paired_, paired_before_; ///< displacements of this and the previous pairing
+    std::vector<RigidBodies::State> rigid_paired_;           ///< at this pairing
+    unsigned int                    geometry_cycles_ = 0;    ///< with period 2, in the geometry loop at hand
+    double                          renewed_         = 0.;   ///< norm that this pass of the geometry loop began with
+    double                          rest_            = 0.;   ///< see rest()
+    unsigned int                    corrections_     = 0;    ///< of Newton, in this pass
+    std::vector<char>               statuses_;               ///< that this pass began with
   };
 } // namespace Nodus
 

@@ -153,8 +153,8 @@ namespace Nodus
     interface_state_           = states_.now.contact;
     contact_->surfaces().set_fixed(model_.boundary_conditions->homogeneous_constraints());
     contact_->begin_increment(increment.begin, increment.end, model_.resolved_interference(increment.end));
-    contact_->status().take_laws(model_.contact->status());
     contact_->resume(unknowns_, start);
+    contact_->take_laws(*model_.contact);
     if (model_.parameters.geometry_loop.mode == LoopParameters::Mode::once)
     {
       unknowns_.block(0) = start;
