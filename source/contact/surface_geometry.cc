@@ -38,6 +38,25 @@ namespace Nodus
         points_.push_back(positions[n]);
   }
 
+  double SurfaceGeometry::bulge() const
+  {
+    const unsigned int n     = degree_ + 1;
+    double             bulge = 0.;
+    const auto         rise  = [&](const unsigned int f, const unsigned int a, const unsigned int b)
+    {
+      const Vector3 chord = positions_[faces_[f].nodes[b]] - positions_[faces_[f].nodes[a]];
+      bulge               = std::max(bulge, std::abs(chord * (nodal_normal(f, b) - nodal_normal(f, a))) / 8.);
+    };
+    for (unsigned int f = 0; f < faces_.size(); ++f)
+      for (unsigned int j = 0; j < n; ++j)
+        for (unsigned int i = 0; i + 1 < n; ++i)
+        {
+          rise(f, n * j + i, n * j + i + 1);
+          rise(f, n * i + j, n * (i + 1) + j);
+        }
+    return bulge;
+  }
+
   dealii::Tensor<2, dim> cross_matrix(const Vector3 &v)
   {
     return dealii::Tensor<2, dim>({{0., -v[2], v[1]}, {v[2], 0., -v[0]}, {-v[1], v[0], 0.}});

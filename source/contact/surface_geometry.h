@@ -94,6 +94,10 @@ namespace Nodus
       return nodal_normals_[f * faces_[f].nodes.size() + n];
     }
 
+    /// How far an arc that meets the normals of neighbouring nodes of a face rises above the line between them, at
+    /// most: what facets cut off from a curved surface [length]. Of the faces of this rank.
+    double bulge() const;
+
     bool smoothed() const
     {
       return shape_degree_ != degree_;

@@ -25,7 +25,7 @@ namespace Nodus
     /// Of contradicted statuses, of the largest pressure or of the cone.
     constexpr double status_tolerance = 1e-3;
     /// Of the mean face of the side with the smaller ones; and in a pair without a closed site, where facets of curved
-    /// surfaces may overlap, but nothing may be pressed in.
+    /// surfaces may overlap by what they cut off, but nothing may be pressed in.
     constexpr double tolerated_depth = 0.25, tolerated_unseen_depth = 0.05;
     /// Of the mean face of the side with the larger ones, where displacements of both sides are prescribed: facets of
     /// curved surfaces overlap a little.
@@ -312,6 +312,7 @@ namespace Nodus
     surfaces.gather(states_.committed.unknowns.block(0), before);
     surfaces.gather(unknowns_.block(0), now);
     std::vector<double> adjusted(surfaces.n_pairs(), 0.), tolerated; // where surfaces are apart or inside by intent
+    std::vector<double> bulge;                                       // that faces of the larger size cut off
     std::vector<unsigned int> closed(surfaces.n_pairs(), 0);
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
     {
@@ -322,7 +323,13 @@ namespace Nodus
     dealii::Utilities::MPI::max(adjusted, model_.communicator, adjusted);
     dealii::Utilities::MPI::sum(closed, model_.communicator, closed);
     for (unsigned int p = 0; p < adjusted.size(); ++p)
+    {
       tolerated.push_back(tolerated_depth * smaller_face_[p] + adjusted[p]);
+      const auto squared = [&](const double face) { return std::pow(larger_face_[p] / face, 2); };
+      bulge.push_back(contact_->geometry()->slave[p].bulge() * squared(surfaces.face_size(p)) +
+                      contact_->geometry()->master[p].bulge() * squared(surfaces.master_face_size(p)));
+    }
+    dealii::Utilities::MPI::max(bulge, model_.communicator, bulge);
 
     const Increment             &increment  = equilibrium_.increment();
     const std::vector<Intrusion> intrusions = find_intrusions(
@@ -342,8 +349,11 @@ namespace Nodus
                pair_label(model_.parameters.contact_pairs, p);
       };
       const Intrusion &intrusion = intrusions[p];
-      (closed[p] > 0 ? depth : unseen)
-          .raise((intrusion.depth - adjusted[p]) / smaller_face_[p], where(intrusion.deepest));
+      const double     inside    = intrusion.depth - adjusted[p];
+      if (closed[p] > 0)
+        depth.raise(inside / smaller_face_[p], where(intrusion.deepest));
+      else
+        unseen.raise((inside - bulge[p]) / smaller_face_[p], where(intrusion.deepest));
       if (intrusion.passed > 0)
         passed.raise(passed.value + intrusion.passed, where(intrusion.first_passed));
     }
