@@ -25,7 +25,7 @@ namespace Nodus
     /// Of contradicted statuses, of the largest pressure or of the cone.
     constexpr double status_tolerance = 1e-3;
     /// Of the mean face of the side with the smaller ones; and in a pair without a closed site, where facets of curved
-    /// surfaces may overlap by what they cut off, but nothing may be pressed in.
+    /// surfaces may overlap by what they cut off, but nothing may be pressed in; never by more than in contact.
     constexpr double tolerated_depth = 0.25, tolerated_unseen_depth = 0.05;
     /// Of the mean face of the side with the larger ones, where displacements of both sides are prescribed: facets of
     /// curved surfaces overlap a little.
@@ -326,8 +326,9 @@ namespace Nodus
     {
       tolerated.push_back(tolerated_depth * smaller_face_[p] + adjusted[p]);
       const auto squared = [&](const double face) { return std::pow(larger_face_[p] / face, 2); };
-      bulge.push_back(contact_->geometry()->slave[p].bulge() * squared(surfaces.face_size(p)) +
-                      contact_->geometry()->master[p].bulge() * squared(surfaces.master_face_size(p)));
+      bulge.push_back(std::min(contact_->geometry()->slave[p].bulge() * squared(surfaces.face_size(p)) +
+                                   contact_->geometry()->master[p].bulge() * squared(surfaces.master_face_size(p)),
+                               (tolerated_depth - tolerated_unseen_depth) * smaller_face_[p]));
     }
     dealii::Utilities::MPI::max(bulge, model_.communicator, bulge);
 

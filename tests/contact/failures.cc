@@ -178,6 +178,16 @@ int main(int argc, char **argv)
   scheme = ContactPairParameters::Scheme::averaged;
   check("  the averaged scheme sees it", outcome(punch) == "no failure");
 
+  // A ball of a mesh, smaller than the one face of the slave, is no facet of a curved surface.
+  auto small                          = punch;
+  small.bodies[1].generator_arguments = "0.5,0.5,1.2 : 0.2 : false";
+  small.bodies[1].generator           = "hyper_ball";
+  small.bodies[1].global_refinement   = 2;
+  small.boundary_conditions[1].region = region(2, {0}, "z > 1.2");
+  small.contact_pairs[0]              = pair(region(1, {z_plus}), region(2, {0}, "z < 1.19"));
+  small.contact_pairs[0].scheme       = ContactPairParameters::Scheme::nodal;
+  check_words("nor is a ball in the middle of its face", outcome(small), {"penetration unseen", "master node ("});
+
   // A rigid ball is driven through a sheet, from above it to below it, in one increment.
   auto thrown                   = p;
   thrown.bodies                 = {box("sheet", "4,4,1", {0, 0, 0}, {1, 1, 0.1}, 100, 0.3)};
