@@ -331,9 +331,9 @@ namespace Nodus
       return;
     }
     const Eigen::LDLT<Eigen::MatrixXd> solver(mass_.value);
-    const Matrix                       C = solver.solve(phi_.value), parts = solver.solve(phi_.parts),
-                 inverse = solver.solve(Eigen::MatrixXd::Identity(m, m));
-    const auto rows      = [&](Matrix &matrix, const unsigned int a)
+    const Matrix C = solver.solve(phi_.value), inverse = solver.solve(Eigen::MatrixXd::Identity(m, m)),
+                 parts = inverse * phi_.parts; // of no columns without rigid carriers
+    const auto rows    = [&](Matrix &matrix, const unsigned int a)
     { return matrix.middleRows(a * n_columns_ + first_, n); };
     // dC = M^-1 (dU - dM C)
     for (unsigned int a = 0; a < m; ++a)
