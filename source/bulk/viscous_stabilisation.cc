@@ -12,16 +12,15 @@ namespace Nodus
                                              const std::vector<std::unique_ptr<Material>> &materials,
                                              const dealii::DoFHandler<dim>                &dof_handler,
                                              const dealii::Mapping<dim>                   &mapping)
+      : viscosity_(viscosity)
   {
     const dealii::IndexSet &owned = dof_handler.locally_owned_dofs();
-    if (viscosity == 0.)
-      return;
-    std::vector<double> stiffness; // of a unit of volume
+    std::vector<double>     stiffness; // of a unit of volume
     for (unsigned int b = 0; b < bodies.size(); ++b)
     {
       const auto   ends = bodies.bounding_box(b).get_boundary_points();
       const double size = ends.first.distance(ends.second);
-      stiffness.push_back(viscosity * materials[b]->youngs_modulus() / (size * size));
+      stiffness.push_back(materials[b]->youngs_modulus() / (size * size));
     }
     const auto           &fe = dof_handler.get_fe();
     dealii::FEValues<dim> values(
@@ -55,7 +54,7 @@ namespace Nodus
       return;
     // the last increment ends at the end of the interval up to round-off
     const double rest = (interval_end - end) / (interval_end - interval_begin);
-    rate_ = resistance_.empty() || rest < 1e-12 ? 0. : rest * (interval_end - interval_begin) / (end - begin);
+    rate_             = rest < 1e-12 ? 0. : viscosity_ * rest * (interval_end - interval_begin) / (end - begin);
   }
 
   void ViscousStabilisation::add(const Vector                            &moved,
@@ -63,13 +62,13 @@ namespace Nodus
                                  BlockCsrMatrix                          &matrix,
                                  Vector                                  &force) const
   {
-    if (rate_ == 0.)
+    if (rate() == 0.)
       return;
     const auto owned = force.locally_owned_elements();
     DoFIndex   n     = 0;
     for (const DoFIndex i : owned)
     {
-      const double resistance = rate_ * resistance_[n];
+      const double resistance = rate() * resistance_[n];
       if (!constraints.is_constrained(i))
       {
         force(i) -= resistance * moved(i);

@@ -20,7 +20,8 @@ namespace Nodus
   ///
   ///     f = -viscosity E V/L^2 s T/dt du,   T: duration of the interval, dt: of the increment,
   ///
-  /// where s falls from 1 to 0 in the course of the interval: at its end nothing is left.
+  /// where s falls from 1 to 0 in the course of the interval: at its end nothing is left. The same dashpots hold the
+  /// bodies while they are relaxed (run/relaxation.h).
   class ViscousStabilisation
   {
   public:
@@ -37,23 +38,43 @@ namespace Nodus
     {
       return rate_ > 0.;
     }
-
-    /// Of the owned degree of freedom number @p i against its displacement in the increment [force/length].
-    double resistance(const unsigned int i) const
+    /// Adds dashpots of @p rate to those of the increment, 0: none.
+    void relax(const double rate)
     {
-      return acts() ? rate_ * resistance_[i] : 0.;
+      relaxation_ = rate;
     }
 
-    /// Adds the resistance against @p moved (owned displacements since the start of the increment) to @p force, zero at
-    /// constrained ones, and its tangent to @p matrix.
+    /// Rates: viscosity s T/dt and what relaxes the bodies [-].
+    double rate() const
+    {
+      return rate_ + relaxation_;
+    }
+    double relaxation() const
+    {
+      return relaxation_;
+    }
+    /// At rate 1, E V/L^2 of the owned degree of freedom number @p i [force/length].
+    double unit_resistance(const unsigned int i) const
+    {
+      return resistance_[i];
+    }
+    /// Of the owned degree of freedom number @p i against what it moves [force/length].
+    double resistance(const unsigned int i) const
+    {
+      return rate() > 0. ? rate() * resistance_[i] : 0.;
+    }
+
+    /// Adds the resistance against @p moved (owned displacements from where the dashpots are at rest) to @p force, zero
+    /// at constrained ones, and its tangent to @p matrix.
     void add(const Vector                            &moved,
              const dealii::AffineConstraints<double> &constraints,
              BlockCsrMatrix                          &matrix,
              Vector                                  &force) const;
 
   private:
-    std::vector<double> resistance_; ///< viscosity E V/L^2 of the owned degrees of freedom [force/length]
-    double              rate_ = 0.;  ///< s T/dt
+    double              viscosity_;
+    std::vector<double> resistance_; ///< E V/L^2 of the owned degrees of freedom [force/length]
+    double              rate_ = 0., relaxation_ = 0.;
   };
 } // namespace Nodus
 

@@ -104,6 +104,7 @@ namespace Nodus
                         &plastic,
                         &resolution})
       *sum = dealii::Utilities::MPI::sum(*sum, model_.communicator);
+    of_increment.stabilisation += equilibrium_.relaxed_work();
     of_increment.stored  = stored - now.energies.stored;
     of_increment.plastic = plastic - now.energies.plastic;
 

@@ -7,10 +7,8 @@
 #include "run/unheld_bodies.h"
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/dofs/dof_tools.h>
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 namespace Nodus
@@ -72,7 +70,10 @@ namespace Nodus
   {
     increment_ = increment;
     model_.impose(increment);
-    forces_.drag = 0.;
+    model_.stabilisation->relax(0.);
+    unstable_     = false;
+    relaxed_work_ = 0.;
+    forces_.drag  = 0.;
     motions_unknown_ =
         !increment.on_new_mesh() && increment.begins_interval() && model_.contact->surfaces().n_pairs() > 0;
     // Where a displacement was prescribed until the interval began, the force that held it goes to zero in it (eq. B4).
@@ -102,6 +103,23 @@ namespace Nodus
     model_.contact->pair(states_.now.unknowns, states_.committed.unknowns.block(0));
   }
 
+  void Equilibrium::hold(const double rate, const Vector &anchor)
+  {
+    model_.stabilisation->relax(rate);
+    anchor_ = anchor;
+  }
+
+  const LinearSystem &Equilibrium::symmetric_system(const double rate)
+  {
+    const double held   = model_.stabilisation->relaxation();
+    const bool   merged = std::exchange(merged_.threshold, false);
+    model_.stabilisation->relax(rate);
+    evaluate(true);
+    merged_.threshold = merged;
+    model_.stabilisation->relax(held);
+    return system_;
+  }
+
   NewtonProblem::Norms Equilibrium::evaluate(const bool measure)
   {
     const Vector &u = states_.now.unknowns.block(0);
@@ -113,11 +131,15 @@ namespace Nodus
       model_.solid->tangent(u_, increment_.end, *constraints_, system_.bulk, rhs, forces_.internal, forces_.external);
       forces_.external += forces_.released;
       rhs += forces_.released;
-      if (model_.stabilisation->acts())
+      forces_.drag = 0.;
+      if (const double rate = model_.stabilisation->rate(); rate > 0.)
       {
-        Vector moved(u);
-        moved -= states_.committed.unknowns.block(0);
-        forces_.drag = 0.;
+        Vector       moved(u);
+        const double part = model_.stabilisation->relaxation() / rate;
+        if (part < 1.)
+          moved.add(part - 1., states_.committed.unknowns.block(0));
+        if (part > 0.)
+          moved.add(-part, anchor_);
         model_.stabilisation->add(moved, *constraints_, system_.bulk, forces_.drag);
         driven_.add_drag(moved, forces_.drag);
         forces_.external += forces_.drag;
@@ -234,13 +256,14 @@ namespace Nodus
       null_pivot_ = report.null_pivots.front();
       singular_   = null_pivot_ < layout.n_u;
       throw SolverFailure("the system is singular (" + std::to_string(report.null_pivots.size()) +
-                              " null pivots), first at " + unknown_locus(null_pivot_),
+                              " null pivots), first at " +
+                              null_pivot_locus(model_, states_.now, increment_, null_pivot_),
                           singular_ ? SolverFailure::Kind::free_body : SolverFailure::Kind::over_constraint);
     }
     const long surplus = report.negative_pivots - 3 * static_cast<long>(layout.n_slave_nodes);
-    if (report.negative_pivots >= 0 && surplus != 0)
-      journal_.console.remark("the tangent has " + std::to_string(std::abs(surplus)) + " negative eigenvalues " +
-                              (surplus > 0 ? "more" : "less") + " than multipliers: the state is not stable");
+    if (report.negative_pivots >= 0 && surplus > 0 && !std::exchange(unstable_, true))
+      journal_.console.remark("the tangent has " + std::to_string(surplus) +
+                              " negative eigenvalues more than multipliers: the iterate is not stable");
     // The solver leaves prescribed components alone: they take what the constraints still ask for.
     constraints_->distribute(correction.block(0));
     limit_step(correction);
@@ -368,32 +391,5 @@ namespace Nodus
   std::string Equilibrium::ways_to_hold(const std::string &first) const
   {
     return Nodus::ways_to_hold(model_, states_.now, increment_, first);
-  }
-
-  std::string Equilibrium::unknown_locus(const DoFIndex flat_index) const
-  {
-    const ContactSurfaces &surfaces = model_.contact->surfaces();
-    const BlockLayout     &layout   = surfaces.layout();
-    if (flat_index >= layout.lambda(0))
-    {
-      const bool     pressure   = flat_index < layout.Lambda(0, 0);
-      const DoFIndex multiplier = pressure ? flat_index - layout.lambda(0) : (flat_index - layout.Lambda(0, 0)) / 2;
-      unsigned int   here       = dealii::numbers::invalid_unsigned_int;
-      for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
-        if (surfaces.multiplier(k) == multiplier)
-          here = k;
-      return (pressure ? "the contact multiplier of " : "the friction multiplier of ") + model_.contact->locus(here) +
-             ": this constraint repeats another one (over-constraint)";
-    }
-    std::map<DoFIndex, Point> points;
-    dealii::DoFTools::map_dofs_to_support_points(*model_.mapping, model_.dof_handler, points);
-    const auto  owner = points.find(flat_index);
-    std::string here =
-        owner == points.end() || !layout.owned[0].is_element(flat_index) ? "" : coordinates(owner->second);
-    for (const auto &part : dealii::Utilities::MPI::all_gather(model_.communicator, here))
-      if (!part.empty())
-        here = part;
-    return "the displacement of node " + here + ": its body is free to move; " +
-           ways_to_hold("hold it with a boundary condition (a soft spring will do)");
   }
 } // namespace Nodus

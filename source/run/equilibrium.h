@@ -64,6 +64,26 @@ namespace Nodus
     unsigned int solve(BlockVector &correction, double relative_tolerance) override;
     void         move(double factor, const BlockVector &correction) override;
 
+    /// Dashpots of @p rate hold all nodes where @p anchor, displacements, says, besides those of viscous stabilisation
+    /// (eq. Y3); 0: none. They last until the next increment begins.
+    void hold(double rate, const Vector &anchor);
+    /// The system at the state at hand without variation, symmetric, with dashpots of @p rate. Collective.
+    const LinearSystem &symmetric_system(double rate);
+    /// LinearSolver::solve_again() for the last correction.
+    bool solve_again(const BlockVector &rhs, BlockVector &solution)
+    {
+      return solver_->solve_again(system_, rhs, solution);
+    }
+    /// Of dashpots in a relaxation, in the increment at hand [energy].
+    void add_relaxed_work(const double work)
+    {
+      relaxed_work_ += work;
+    }
+    double relaxed_work() const
+    {
+      return relaxed_work_;
+    }
+
     /// Pairs the surfaces at the state at hand: what a geometry pass begins with.
     void pair();
     /// Tests and changes statuses, and says so. @throws SolverFailure where they cycle.
@@ -104,6 +124,11 @@ namespace Nodus
     {
       return singular_;
     }
+    /// A symmetric system of this increment has had more negative eigenvalues than multipliers.
+    bool unstable() const
+    {
+      return unstable_;
+    }
     DoFIndex null_pivot() const
     {
       return null_pivot_;
@@ -118,7 +143,6 @@ namespace Nodus
     Norms       assemble_contact();
     void        limit_step(const BlockVector &correction);
     void        warn_of_free_motions();
-    std::string unknown_locus(DoFIndex flat_index) const;
     std::string ways_to_hold(const std::string &first) const;
 
     Model                                   &model_;
@@ -128,7 +152,9 @@ namespace Nodus
     DrivenRigidBodies                        driven_;
     LinearSystem                             system_;
     NodalForces                              forces_;
-    Vector                                   u_;                     ///< displacements with ghosts, of the trial
+    Vector                                   u_;      ///< displacements with ghosts, of the trial
+    Vector                                   anchor_; ///< of the dashpots that hold() sets
+    double                                   relaxed_work_ = 0.;
     Vector                                   bulk_rhs_;              ///< right-hand side before contact
     const dealii::AffineConstraints<double> *constraints_ = nullptr; ///< of the trial
     BlockVector                              iterate_;               ///< that the correction starts from
@@ -138,6 +164,7 @@ namespace Nodus
     std::string                              cycling_;
     DoFIndex                                 null_pivot_        = dealii::numbers::invalid_dof_index;
     bool                                     singular_          = false;
+    bool                                     unstable_          = false;
     bool                                     motions_unknown_   = false; ///< an interval begins
     double                                   step_limit_        = 1.;    ///< part of the correction that may be taken
     double                                   prescribed_before_ = 0.; ///< still to be met at the last iterate, relative

@@ -14,6 +14,8 @@ namespace Nodus
   {
     /// Forces of viscous stabilisation beyond this part of the largest nodal force are warned of.
     constexpr double large_drag = 0.01;
+    /// Times that an increment is halved before the bodies are relaxed, where iterates are not stable.
+    constexpr unsigned int patient_halvings = 2;
     /// Of the contact force: the log says nothing of smaller friction.
     constexpr double negligible_friction = 1e-3;
   } // namespace
@@ -41,6 +43,7 @@ namespace Nodus
       {
         ++mesh_repetitions_;
         judge_.begin_on_mesh();
+        parts_.strategy.begin_on_mesh();
         parts_.journal.console.remark("the increment is repeated on the new mesh");
         continue;
       }
@@ -51,6 +54,7 @@ namespace Nodus
           parts_.adaptation.adapt())
       {
         judge_.begin_on_mesh();
+        parts_.strategy.begin_on_mesh();
         restore_equilibrium();
       }
       if (interval > 0 && increment % interval == 0)
@@ -71,7 +75,11 @@ namespace Nodus
     parts_.equilibrium.begin_increment(increment);
     try
     {
-      parts_.strategy.solve_increment();
+      if (relaxing_)
+        parts_.strategy.relax_increment();
+      else
+        parts_.strategy.solve_increment();
+      relaxing_ = relaxed_ = false;
       check_stabilised_motion(parts_.model, parts_.states);
       judge();
       return true;
@@ -85,7 +93,9 @@ namespace Nodus
       journal.diagnosis.end_attempt(failure.what());
       const bool may_shrink =
           !parts_.strategy.begins_singular() && failure.kind() != SolverFailure::Kind::prescribed_contact;
-      const bool  again = may_shrink && path.cut_back();
+      const bool  relax  = may_shrink && may_relax();
+      const bool  halved = may_shrink && !relax && path.cut_back();
+      const bool  again  = halved || relax;
       std::string hint;
       if (!again)
         hint = report_failure(
@@ -93,10 +103,20 @@ namespace Nodus
       parts_.model.roll_back(parts_.states);
       if (!again)
         give_up(reason.str(), hint, may_shrink);
-      journal.console.remark(reason.str() + "; the increment is halved");
-      ++cut_backs_;
+      journal.console.remark(reason.str() + (halved ? "; the increment is halved" : "; the bodies are relaxed"));
+      relaxing_ = relax;
+      relaxed_  = relaxed_ || relax;
+      cut_backs_ += halved;
       return false;
     }
+  }
+
+  /// Relaxation is the last resort, and is tried before where smaller increments end at iterates that are not stable.
+  bool LoadPath::may_relax() const
+  {
+    return !relaxing_ && parts_.strategy.may_relax() &&
+           (!parts_.path.may_cut_back() ||
+            (!relaxed_ && cut_backs_ >= patient_halvings && parts_.equilibrium.unstable()));
   }
 
   /// Nothing is committed that does not hold where it is measured anew. @throws SolverFailure

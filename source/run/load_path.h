@@ -41,6 +41,7 @@ namespace Nodus
   private:
     bool              solve();
     void              finish(const std::function<void(unsigned int, double)> &callback);
+    bool              may_relax() const;
     void              judge();
     void              commit();
     void              restore_equilibrium();
@@ -53,10 +54,12 @@ namespace Nodus
     RunParts          parts_;
     EnergyAudit       audit_;
     Judge             judge_;
-    unsigned int      first_;                ///< increment of this run
-    std::vector<bool> never_closed_;         ///< by pair
-    unsigned int      cut_backs_        = 0; ///< since the last increment that converged
-    unsigned int      mesh_repetitions_ = 0; ///< of the increment at hand on a finer mesh
+    unsigned int      first_;                    ///< increment of this run
+    std::vector<bool> never_closed_;             ///< by pair
+    unsigned int      cut_backs_        = 0;     ///< since the last increment that converged
+    bool              relaxing_         = false; ///< the increment at hand
+    bool              relaxed_          = false; ///< since the last increment that converged
+    unsigned int      mesh_repetitions_ = 0;     ///< of the increment at hand on a finer mesh
   };
 } // namespace Nodus
 

@@ -77,14 +77,19 @@ namespace Nodus
       size_ = twice;
   }
 
-  bool LoadStepping::cut_back()
+  LoadStepping::Ticks LoadStepping::half() const
   {
     Ticks size = size_ / 2;
     while (size > 0 && position_ + size >= end_position()) // an increment that the end of the interval had shortened
       size /= 2;
-    if (!parameters_.cut_back || size == 0)
+    return parameters_.cut_back ? size : 0;
+  }
+
+  bool LoadStepping::cut_back()
+  {
+    if (half() == 0)
       return false;
-    size_ = size;
+    size_ = half();
     return true;
   }
 

@@ -98,6 +98,10 @@ namespace Nodus
     void accept(unsigned int newton_iterations, bool smooth);
     /// The increment at hand failed: halves it. @returns false when it may not become smaller.
     bool cut_back();
+    bool may_cut_back() const
+    {
+      return half() > 0;
+    }
     /// Smallest increment of this interval that cut_back() leads to.
     double smallest() const;
 
@@ -121,6 +125,7 @@ namespace Nodus
       return Ticks(1) << n_halvings_;
     }
     Ticks  end_position() const;
+    Ticks  half() const; ///< of the increment at hand, 0: none
     double time_of(Ticks position) const;
 
     LoadSteppingParameters parameters_;

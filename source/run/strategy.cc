@@ -10,7 +10,8 @@
 // | level          | what is tried                                | where                               |
 // |----------------|----------------------------------------------|-------------------------------------|
 // | increment      | the attempts of the ladder below             | Strategy::ladder                    |
-// | increment      | halves                                       | LoadPath::solve                     |
+// | increment      | left where it ends in no stable equilibrium  | Strategy::leave_if_unstable         |
+// | increment      | halves; at the smallest one, relaxation      | LoadPath::solve                     |
 // | geometry loop  | slow passes are mixed                        | IncrementLoops::geometry_converged  |
 // | threshold loop | slow passes are mixed                        | IncrementLoops::threshold_converged |
 // | statuses cycle | regularised law; frozen statuses             | Status::find_period                 |
@@ -26,6 +27,8 @@ namespace Nodus
       , states_(states)
       , equilibrium_(equilibrium)
       , loops_(loops)
+      , stability_(model, equilibrium)
+      , relaxation_(model, journal, states, equilibrium, loops, stability_)
   {
   }
 
@@ -79,7 +82,7 @@ namespace Nodus
       try
       {
         run(*attempt);
-        return;
+        return leave_if_unstable(*attempt);
       }
       catch (const SolverFailure &failure)
       {
@@ -106,6 +109,55 @@ namespace Nodus
     equilibrium_.begin_attempt(attempt.merged);
     journal_.diagnosis.begin_attempt(attempt.merged.names());
     loops_.solve();
+  }
+
+  void Strategy::relax_increment()
+  {
+    journal_.counts = IterationCounts();
+    relax(false);
+  }
+
+  void Strategy::relax(const bool from_equilibrium)
+  {
+    ++journal_.counts.fallbacks;
+    journal_.count(Remedy::relaxation);
+    try
+    {
+      relaxation_.solve(ladder().front().merged, from_equilibrium);
+      stability_.release();
+    }
+    catch (const SolverFailure &)
+    {
+      stability_.release();
+      throw;
+    }
+  }
+
+  /// Newton's method finds equilibria that are not stable, too: a strut that has not buckled. Bodies do not stay there.
+  void Strategy::leave_if_unstable(const Attempt &attempt)
+  {
+    if (!stability_.follow() || !stability_.can_count())
+      return;
+    const unsigned int n = stability_.n_unstable();
+    if (n == 0)
+      return;
+    const std::string what = "the equilibrium that was found is not stable (" + std::to_string(n) +
+                             (n == 1 ? " negative eigenvalue)" : " negative eigenvalues)");
+    if (!may_relax())
+      return journal_.console.remark("warning: " + what + ": the bodies would leave it");
+    journal_.console.remark(what + ": the bodies are let go from it");
+    try
+    {
+      relax(true);
+    }
+    catch (const SolverFailure &failure)
+    {
+      journal_.console.remark(std::string("warning: no stable equilibrium was found: ") + failure.what() +
+                              "; the increment ends in the one that is not stable");
+      journal_.diagnosis.end_attempt(failure.what());
+      model_.roll_back(states_);
+      run(attempt);
+    }
   }
 
   bool Strategy::begins_singular() const

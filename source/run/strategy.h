@@ -1,7 +1,7 @@
 #ifndef nodus_run_strategy_h
 #define nodus_run_strategy_h
 
-#include "run/increment_loops.h"
+#include "run/relaxation.h"
 
 #include <optional>
 #include <vector>
@@ -28,9 +28,21 @@ namespace Nodus
     /// Those that are of use in the case at hand, in their order.
     std::vector<Attempt> ladder() const;
 
+    /// The mesh is a new one.
+    void begin_on_mesh()
+    {
+      stability_.begin_on_mesh();
+    }
+
     /// Solves the increment that Equilibrium::begin_increment() was given. @throws SolverFailure of the last attempt,
     /// whose state is still at hand.
     void solve_increment();
+    /// The same by relaxation alone, where smaller increments do not help.
+    void relax_increment();
+    bool may_relax() const
+    {
+      return model_.parameters.strategy.uses(Remedy::relaxation) && stability_.can_count();
+    }
 
     /// No attempt came beyond its first system, which leaves bodies free, and that is the one of the last converged
     /// state: all smaller increments begin with it, too. Collective.
@@ -44,12 +56,16 @@ namespace Nodus
 
   private:
     void run(const Attempt &attempt);
+    void relax(bool from_equilibrium);
+    void leave_if_unstable(const Attempt &attempt);
 
     Model          &model_;
     Journal        &journal_;
     States         &states_;
     Equilibrium    &equilibrium_;
     IncrementLoops &loops_;
+    Stability       stability_;
+    Relaxation      relaxation_;
   };
 } // namespace Nodus
 

@@ -1,10 +1,13 @@
 #include "run/unheld_bodies.h"
 #include "contact/loci.h"
+#include "mesh/sides.h"
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <sstream>
 
 namespace Nodus
@@ -58,6 +61,34 @@ namespace Nodus
                : start ? "friction holds nothing before there is pressure"
                        : "friction is at its limit, or does not act in this direction");
     return text.str();
+  }
+
+  std::string
+  null_pivot_locus(const Model &model, const State &state, const Increment &increment, const DoFIndex flat_index)
+  {
+    const ContactSurfaces &surfaces = model.contact->surfaces();
+    const BlockLayout     &layout   = surfaces.layout();
+    if (flat_index >= layout.lambda(0))
+    {
+      const bool     pressure   = flat_index < layout.Lambda(0, 0);
+      const DoFIndex multiplier = pressure ? flat_index - layout.lambda(0) : (flat_index - layout.Lambda(0, 0)) / 2;
+      unsigned int   here       = dealii::numbers::invalid_unsigned_int;
+      for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
+        if (surfaces.multiplier(k) == multiplier)
+          here = k;
+      return (pressure ? "the contact multiplier of " : "the friction multiplier of ") + model.contact->locus(here) +
+             ": this constraint repeats another one (over-constraint)";
+    }
+    std::map<DoFIndex, Point> points;
+    dealii::DoFTools::map_dofs_to_support_points(*model.mapping, model.dof_handler, points);
+    const auto  owner = points.find(flat_index);
+    std::string here =
+        owner == points.end() || !layout.owned[0].is_element(flat_index) ? "" : coordinates(owner->second);
+    for (const auto &part : dealii::Utilities::MPI::all_gather(model.communicator, here))
+      if (!part.empty())
+        here = part;
+    return "the displacement of node " + here + ": its body is free to move; " +
+           ways_to_hold(model, state, increment, "hold it with a boundary condition (a soft spring will do)");
   }
 
   std::vector<FailureEvidence::Spring> proposed_springs(const Model &model, const State &state, const double time)

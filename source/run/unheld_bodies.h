@@ -21,6 +21,9 @@ namespace Nodus
   std::string
   ways_to_hold(const Model &model, const State &state, const Increment &increment, const std::string &first);
 
+  /// What the unknown @p flat_index of a singular system in @p increment belongs to, and what to do about it.
+  std::string null_pivot_locus(const Model &model, const State &state, const Increment &increment, DoFIndex flat_index);
+
   /// Soft springs that would hold the bodies with free motions, on the first of their sides that is not in contact.
   std::vector<FailureEvidence::Spring> proposed_springs(const Model &model, const State &state, double time);
 

@@ -61,23 +61,6 @@ namespace Nodus
       return code == -8 || code == -9 || code == -11 || code == -14 || code == -15 || (code <= -17 && code >= -20);
     }
 
-    // Triplets name multipliers of any rank, so every rank needs every scale; index: flat - n_u.
-    std::vector<double> gather_scale(const LinearSystem &system)
-    {
-      const BlockLayout  &layout = *system.layout;
-      const DoFIndex      n      = layout.n_slave_nodes;
-      std::vector<double> scale(3 * n, 0.);
-      std::size_t         position = 0;
-      for (const DoFIndex k : layout.owned[1])
-      {
-        scale[k]             = system.multiplier_scale.at(position++);
-        scale[n + 2 * k]     = system.multiplier_scale.at(position++);
-        scale[n + 2 * k + 1] = system.multiplier_scale.at(position++);
-      }
-      dealii::Utilities::MPI::sum(scale, layout.communicator, scale);
-      return scale;
-    }
-
     double norm(const std::vector<double> &v)
     {
       double sum = 0.;
@@ -138,10 +121,8 @@ namespace Nodus
 
   DirectSolver::~DirectSolver() = default;
 
-  bool DirectSolver::collect_entries(const LinearSystem &system, const std::vector<double> &scale)
+  bool DirectSolver::collect_entries(const LinearSystem &system, const FlatVectors &flat)
   {
-    const DoFIndex n_u = system.layout->n_u;
-
     // All entries in sequence, those of one place apart.
     const auto for_entries = [&](const auto &f)
     {
@@ -179,7 +160,7 @@ namespace Nodus
     for_entries(
         [&](const DoFIndex i, const DoFIndex j, const double v)
         {
-          const double scaled = v * (i < n_u ? 1. : scale[i - n_u]) * (j < n_u ? 1. : scale[j - n_u]);
+          const double scaled = v * flat.scale(i) * flat.scale(j);
           finite              = finite && std::isfinite(scaled);
           entries[next[i]++]  = {static_cast<int>(j), scaled};
         });
@@ -306,15 +287,15 @@ namespace Nodus
       instance_.reset(); // MUMPS takes the kind of matrix once
     symmetric_ = system.symmetric;
 
-    const std::vector<double> scale   = gather_scale(system);
-    const bool                changed = collect_entries(system, scale);
+    const FlatVectors flat(system);
+    const bool        changed = collect_entries(system, flat);
     factorise(changed || !same_size);
 
     Report report;
     solutions.resize(rhs.size());
     for (unsigned int n = 0; n < rhs.size(); ++n)
     {
-      const double relative_residual = substitute(layout, scale, *rhs[n], solutions[n]);
+      const double relative_residual = substitute(flat, *rhs[n], solutions[n]);
       if (n == 0)
         report.relative_residual = relative_residual;
     }
@@ -332,21 +313,10 @@ namespace Nodus
     return report;
   }
 
-  double DirectSolver::substitute(const BlockLayout         &layout,
-                                  const std::vector<double> &scale,
-                                  const BlockVector         &rhs,
-                                  BlockVector               &solution)
+  double DirectSolver::substitute(const FlatVectors &flat, const BlockVector &rhs, BlockVector &solution)
   {
-    // Multipliers follow u in the flat numbering, in the order of the blocks.
-    const std::array<DoFIndex, 3> offset = {{0, layout.n_u, layout.n_u + layout.n_slave_nodes}};
-    const auto scale_of = [&](const DoFIndex flat) { return flat < layout.n_u ? 1. : scale[flat - layout.n_u]; };
-
-    std::vector<double> b(size_, 0.);
-    for (unsigned int block = 0; block < 3; ++block)
-      for (const DoFIndex i : layout.owned[block])
-        b[offset[block] + i] = scale_of(offset[block] + i) * rhs.block(block)(i);
-    dealii::Utilities::MPI::sum(b, communicator_, b);
-    const double norm_b = norm(b);
+    std::vector<double> b      = flat.flatten(rhs);
+    const double        norm_b = norm(b);
     if (!std::isfinite(norm_b))
       throw SolverFailure("Direct solver: the right-hand side holds a value that is not finite",
                           SolverFailure::Kind::not_finite);
@@ -372,18 +342,23 @@ namespace Nodus
       throw SolverFailure("Direct solver: the solution is not finite, the matrix is numerically singular",
                           SolverFailure::Kind::linear_solver);
 
-    layout.reinit(solution);
-    for (unsigned int block = 0; block < 3; ++block)
-    {
-      for (const DoFIndex i : layout.owned[block])
-        solution.block(block)(i) = scale_of(offset[block] + i) * x[offset[block] + i];
-      solution.block(block).compress(dealii::VectorOperation::insert);
-    }
+    flat.unflatten(x, solution);
     for (int i = 0; i < size_; ++i) // back to the units of the caller
     {
-      r[i] /= scale_of(i);
-      b[i] /= scale_of(i);
+      r[i] /= flat.scale(i);
+      b[i] /= flat.scale(i);
     }
     return norm(r) / (norm_b > 0. ? norm(b) : 1.);
+  }
+
+  bool DirectSolver::solve_again(const LinearSystem &system, const BlockVector &rhs, BlockVector &solution)
+  {
+    if (!instance_ || size_ != static_cast<int>(system.layout->size()))
+      return false;
+    const FlatVectors   flat(system);
+    std::vector<double> x = flat.flatten(rhs);
+    apply_inverse(x);
+    flat.unflatten(x, solution);
+    return true;
   }
 } // namespace Nodus

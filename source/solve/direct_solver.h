@@ -1,6 +1,7 @@
 #ifndef nodus_solve_direct_solver_h
 #define nodus_solve_direct_solver_h
 
+#include "solve/flat_vectors.h"
 #include "solve/linear_solver.h"
 
 #include <memory>
@@ -23,21 +24,19 @@ namespace Nodus
                  const std::vector<const BlockVector *> &rhs,
                  std::vector<BlockVector>               &solutions,
                  double                                  relative_tolerance) override;
+    bool   solve_again(const LinearSystem &system, const BlockVector &rhs, BlockVector &solution) override;
 
   private:
     struct Instance;
 
     /// Refills the triplets with the equilibrated entries, one for each place on this rank. @returns whether the
     /// pattern differs from that of the previous call, on any rank.
-    bool collect_entries(const LinearSystem &system, const std::vector<double> &scale);
+    bool collect_entries(const LinearSystem &system, const FlatVectors &flat);
 
     void factorise(bool pattern_changed);
 
     /// With the factors at hand. @returns the relative residual.
-    double substitute(const BlockLayout         &layout,
-                      const std::vector<double> &scale,
-                      const BlockVector         &rhs,
-                      BlockVector               &solution);
+    double substitute(const FlatVectors &flat, const BlockVector &rhs, BlockVector &solution);
 
     /// @p x is the right-hand side on entry and the solution on return, on every rank.
     void apply_inverse(std::vector<double> &x);

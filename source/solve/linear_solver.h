@@ -44,6 +44,13 @@ namespace Nodus
                          std::vector<BlockVector>               &solutions,
                          double                                  relative_tolerance) = 0;
 
+    /// Solves with the factors of the last solve() again, as far as they go without refinement. @returns false where
+    /// there are none: iterative solvers. Collective.
+    virtual bool solve_again(const LinearSystem &, const BlockVector & /*rhs*/, BlockVector & /*solution*/)
+    {
+      return false;
+    }
+
     /// Set-up counts as Phase::solver_set_up from now on.
     void set_profile(Profile *profile)
     {

@@ -37,6 +37,10 @@ namespace Nodus
                  const std::vector<const BlockVector *> &rhs,
                  std::vector<BlockVector>               &solutions,
                  double                                  relative_tolerance) override;
+    bool   solve_again(const LinearSystem &system, const BlockVector &rhs, BlockVector &solution) override
+    {
+      return (direct_ ? direct_ : asked_)->solve_again(system, rhs, solution);
+    }
 
   private:
     LinearSolverParameters::Type             type_;

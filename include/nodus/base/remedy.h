@@ -12,6 +12,7 @@ namespace Nodus
   {
     three_loops,
     coupled_threshold,
+    relaxation,
     mixed_geometry,
     mixed_thresholds,
     regularised_law,
@@ -21,8 +22,9 @@ namespace Nodus
     direct_solver
   };
 
-  constexpr std::array<const char *, 9> remedy_names = {{"three loops",
+  constexpr std::array<const char *, 10> remedy_names = {{"three loops",
                                                          "coupled threshold",
+                                                         "relaxation",
                                                          "mixed geometry",
                                                          "mixed thresholds",
                                                          "regularised law",
