@@ -204,17 +204,16 @@ namespace Nodus
     forces_.contact = 0.;
     model_.contact->add_forces(forces_.contact);
 
-    Vector moved(states_.now.unknowns.block(0));
-    moved -= states_.committed.unknowns.block(0);
-    const double length          = std::max(largest_entry(moved), model_.length_scale);
-    double      &stiffness_scale = states_.now.stiffness_scale;
+    double &stiffness_scale = states_.now.stiffness_scale;
     if (stiffness_scale == 0.)
       stiffness_scale = system_.bulk.largest_diagonal();
-    // The last term is round-off: without it a body that only translates would be measured against its own noise.
-    const double      scale = std::max({largest_entry(forces_.internal),
-                                        largest_entry(forces_.external),
-                                        largest_entry(forces_.contact),
-                                        relative_force_floor * stiffness_scale * length});
+    const NormScales least(model_, states_.now.unknowns.block(0), states_.committed.unknowns.block(0), stiffness_scale);
+    const double     length = least.length;
+    const double     largest =
+        std::max({largest_entry(forces_.internal), largest_entry(forces_.external), largest_entry(forces_.contact)});
+    // Without the second a body that only translates would be measured against its own noise.
+    const double scale = std::max(largest, least.force);
+    forces_.noise      = largest > 0. ? least.noise / largest : 0.;
     const OwnedValues out(forces_.out_of_balance), in(forces_.internal), ex(forces_.external), on(forces_.contact);
     for (const auto i : owned)
       out(i) = constraints_->is_constrained(i) ? 0. : in(i)-ex(i) + on(i);

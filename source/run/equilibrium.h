@@ -6,6 +6,7 @@
 #include "run/journal.h"
 #include "run/load_stepping.h"
 #include "run/model.h"
+#include "run/norm_scales.h"
 #include "solve/newton.h"
 #include "solve/rescued_solver.h"
 
@@ -36,6 +37,7 @@ namespace Nodus
     Vector released;       ///< what is left of reactions where nothing is prescribed any more
     Vector out_of_balance; ///< the sum, zero where prescribed
     double scale = 0.;     ///< that they are relative to in the norms
+    double noise = 0.;     ///< Measures::noise over the largest of them: beyond 1, round-off limits what is known
   };
 
   /// Equilibrium of all bodies at the end of an increment, as Newton sees it: residual, tangent and correction.
@@ -44,9 +46,6 @@ namespace Nodus
   class Equilibrium : public NewtonProblem
   {
   public:
-    /// Forces below this fraction of stiffness times displacement are not resolved to the tolerance of Newton (1e-8).
-    static constexpr double relative_force_floor = 1e-5;
-
     /// All outlive it.
     Equilibrium(Model &model, Journal &journal, States &states);
 

@@ -239,6 +239,12 @@ namespace Nodus
         evidence.constraint = constraint;
     }
 
+    /// Whether the softest motion is known, on the mesh at hand.
+    bool has_motion(const FailedRun &p)
+    {
+      return p.softest_motion.size() == p.model.contact->surfaces().layout().n_u;
+    }
+
     FailureEvidence evidence_of(const FailedRun &p, const SolverFailure &failure, const bool may_shrink)
     {
       // Contact at the last iterate, whose bulk may be the reason why the rest of its residual was not computed.
@@ -254,6 +260,9 @@ namespace Nodus
       evidence.linear_solver = p.equilibrium.solver_type();
       evidence.force_scale   = p.equilibrium.forces().scale;
       evidence.may_shrink    = may_shrink;
+      evidence.unstable      = p.equilibrium.unstable();
+      evidence.relaxed       = p.journal.counts.remedies[Remedy::relaxation] > 0;
+      evidence.motion_known  = has_motion(p);
       find_worst_nodes(p, evidence);
       find_changing_sites(p, evidence);
       find_partners(p, evidence);
@@ -290,6 +299,8 @@ namespace Nodus
       };
       std::vector<VtuOutput::NodalField> fields;
       fields.push_back({{"residual_force"}, p.model.with_ghosts(p.equilibrium.forces().out_of_balance)});
+      if (has_motion(p))
+        fields.push_back({{"softest_motion"}, p.model.with_ghosts(p.softest_motion)});
       if (surfaces.n_pairs() > 0)
       {
         fields.push_back(
@@ -328,11 +339,12 @@ namespace Nodus
         write_failed_state(p, "failed_state", det_F);
       }
       throw_everywhere<InputError>(p.journal.diagnosis.write(evidence), p.model.communicator);
-      return "; " + p.model.parameters.output.results_folder + "/diagnosis.md says more";
+      return ". Suspected: " + p.journal.diagnosis.summary(evidence) + " (" + p.model.parameters.output.results_folder +
+             "/diagnosis.md says more)";
     }
     catch (const InputError &error)
     {
-      return std::string("; there is no diagnosis: ") + error.what();
+      return std::string(". There is no diagnosis: ") + error.what();
     }
   }
 } // namespace Nodus

@@ -11,11 +11,12 @@ namespace Nodus
   /// What a failed increment is reported from, at the state that it failed in.
   struct FailedRun
   {
-    Model       &model;
-    Journal     &journal;
-    States      &states;
-    Equilibrium &equilibrium;
-    Results     &results;
+    Model        &model;
+    Journal      &journal;
+    States       &states;
+    Equilibrium  &equilibrium;
+    Results      &results;
+    const Vector &softest_motion; ///< Strategy::softest_motion()
   };
 
   /// Records why the increment at hand failed: evidence for the diagnosis, and its fields. @p may_shrink: smaller

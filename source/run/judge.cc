@@ -18,8 +18,8 @@ namespace Nodus
   {
     /// Forces, laws and thresholds may violate their equations by so many times what their loop asks for.
     constexpr double allowance = 10.;
-    /// ... and by this: which sites at the rim of a master have a partner depends on which had one before.
-    constexpr double ambiguity = 1e-4;
+    /// ... and by this: what pairing from another state finds is the same up to round-off alone.
+    constexpr double round_off = 1e-6;
     /// The resultant of a body and that of a pair, relative; the moment of a pair in forces times mean faces.
     constexpr double body_tolerance = 1e-6, pair_force_tolerance = 1e-9, pair_moment_tolerance = 0.1;
     /// Of contradicted statuses, of the largest pressure or of the cone.
@@ -166,9 +166,9 @@ namespace Nodus
       contact_->pair(unknowns_, start);
     contact_->evaluate();
 
-    Vector moved(unknowns_.block(0));
-    moved -= start;
-    length_ = std::max(largest_entry(moved), model_.length_scale);
+    const NormScales least(model_, unknowns_.block(0), start, states_.now.stiffness_scale);
+    length_ = least.length;
+    force_  = least.force;
   }
 
   /// Of forces and laws: a geometry loop that does not settle may leave more than Newton's method.
@@ -176,7 +176,7 @@ namespace Nodus
   {
     const double of_loop = model_.parameters.geometry_loop.tolerance;
     return std::max({allowance * of_newton,
-                     ambiguity,
+                     round_off,
                      equilibrium_.merged().geometry ? 0. : allowance * of_loop,
                      rest_ > 0. ? 2. * IncrementLoops::tolerated_rest(of_loop) : 0.});
   }
@@ -237,10 +237,7 @@ namespace Nodus
     external += given.drag;
     contact = 0.;
     contact_->add_forces(contact);
-    const double scale = std::max({largest_entry(internal),
-                                   largest_entry(external),
-                                   largest_entry(contact),
-                                   Equilibrium::relative_force_floor * states_.now.stiffness_scale * length_});
+    const double scale = std::max({largest_entry(internal), largest_entry(external), largest_entry(contact), force_});
 
     Vector missing(internal);
     missing -= external;

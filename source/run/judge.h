@@ -46,6 +46,7 @@ namespace Nodus
     BlockVector                       unknowns_;
     std::vector<double>               larger_face_, smaller_face_; ///< mean ones of the sides of each pair [length]
     double                            length_ = 0.; ///< of the step, that gaps and slips are measured against
+    double                            force_  = 0.; ///< that forces are measured against, at least
     double                            rest_   = 0.; ///< of the geometry loop
   };
 } // namespace Nodus

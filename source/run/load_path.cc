@@ -14,6 +14,8 @@ namespace Nodus
   {
     /// Forces of viscous stabilisation beyond this part of the largest nodal force are warned of.
     constexpr double large_drag = 0.01;
+    /// Forces whose noise is so many times what Newton's method asks for are warned of.
+    constexpr double large_noise = 10.;
     /// Times that an increment is halved before the bodies are relaxed, where iterates are not stable.
     constexpr unsigned int patient_halvings = 2;
     /// Of the contact force: the log says nothing of smaller friction.
@@ -93,13 +95,19 @@ namespace Nodus
       journal.diagnosis.end_attempt(failure.what());
       const bool may_shrink =
           !parts_.strategy.begins_singular() && failure.kind() != SolverFailure::Kind::prescribed_contact;
-      const bool  relax  = may_shrink && may_relax();
+      const bool  relax  = may_shrink && may_relax(failure.kind());
       const bool  halved = may_shrink && !relax && path.cut_back();
       const bool  again  = halved || relax;
       std::string hint;
       if (!again)
-        hint = report_failure(
-            {parts_.model, parts_.journal, parts_.states, parts_.equilibrium, parts_.results}, failure, may_shrink);
+        hint = report_failure({parts_.model,
+                               parts_.journal,
+                               parts_.states,
+                               parts_.equilibrium,
+                               parts_.results,
+                               parts_.strategy.softest_motion()},
+                              failure,
+                              may_shrink);
       parts_.model.roll_back(parts_.states);
       if (!again)
         give_up(reason.str(), hint, may_shrink);
@@ -111,12 +119,15 @@ namespace Nodus
     }
   }
 
-  /// Relaxation is the last resort, and is tried before where smaller increments end at iterates that are not stable.
-  bool LoadPath::may_relax() const
+  /// Where iterates are not stable: once after a few halvings, and again when no smaller increment is left.
+  bool LoadPath::may_relax(const SolverFailure::Kind failure) const
   {
-    return !relaxing_ && parts_.strategy.may_relax() &&
-           (!parts_.path.may_cut_back() ||
-            (!relaxed_ && cut_backs_ >= patient_halvings && parts_.equilibrium.unstable()));
+    using Kind         = SolverFailure::Kind;
+    const bool answers = failure == Kind::newton_stalled || failure == Kind::newton_limit ||
+                         failure == Kind::status_cycle || failure == Kind::geometry_cycle ||
+                         failure == Kind::loop_limit;
+    return answers && !relaxing_ && parts_.strategy.may_relax() && parts_.equilibrium.unstable() &&
+           (!parts_.path.may_cut_back() || (!relaxed_ && cut_backs_ >= patient_halvings));
   }
 
   /// Nothing is committed that does not hold where it is measured anew. @throws SolverFailure
@@ -149,6 +160,7 @@ namespace Nodus
     Journal        &journal   = parts_.journal;
     const Increment increment = path.at_hand();
     warn_of_lost_partners();
+    warn_of_noise();
     report_stabilisation();
     commit();
     path.accept(journal.counts.newton, journal.counts.fallbacks == 0);
@@ -256,6 +268,19 @@ namespace Nodus
                                     ": they slid off the master surface, or went through it in too large an increment");
   }
 
+  /// Says what round-off leaves of forces that are small against stiffness times displacement.
+  void LoadPath::warn_of_noise() const
+  {
+    const double noise = parts_.equilibrium.forces().noise;
+    if (noise <= large_noise)
+      return;
+    std::ostringstream text;
+    text << std::setprecision(2) << "warning: round-off of displacements as large as these leaves "
+         << noise * parts_.model.parameters.newton.force_tolerance
+         << " of the largest force unknown; bodies that start near each other lose fewer digits";
+    parts_.journal.console.remark(text.str());
+  }
+
   void LoadPath::warn_of_open_pairs() const
   {
     for (unsigned int p = 0; p < never_closed_.size(); ++p)
@@ -299,12 +324,8 @@ namespace Nodus
             << (path.increment() > 1 ? "" : " (no increment converged)");
     if (!may_shrink)
       message << ". Smaller increments do not change that, so the increment was not cut back";
-    else if (!parts_.model.parameters.load_stepping.cut_back)
-      message << ". Give more Increments, or set 'Load stepping/Cut back = true'";
-    else
-      message << ". The increment was cut back to " << path.target() - path.time()
-              << "; if the case itself is right, give a smaller 'Load stepping/Minimum increment' or more "
-                 "'Newton/Maximum iterations'";
+    else if (parts_.model.parameters.load_stepping.cut_back)
+      message << ". The increment was cut back to " << path.target() - path.time();
     message << hint;
     throw SolverFailure(message.str());
   }

@@ -41,11 +41,12 @@ namespace Nodus
   private:
     bool              solve();
     void              finish(const std::function<void(unsigned int, double)> &callback);
-    bool              may_relax() const;
+    bool              may_relax(SolverFailure::Kind failure) const;
     void              judge();
     void              commit();
     void              restore_equilibrium();
     void              warn_of_lost_partners() const;
+    void              warn_of_noise() const;
     void              warn_of_open_pairs() const;
     void              report_stabilisation() const;
     void              say_what_changed(const std::vector<ContactResultants> &before) const;

@@ -98,7 +98,8 @@ namespace Nodus
       rate   = stable ? softer * rate : smallest_stable(rate);
       softer = std::max(softest, softer * std::sqrt(softer));
     }
-    throw SolverFailure("the relaxation has not come to rest", SolverFailure::Kind::loop_limit);
+    throw SolverFailure("iterates are not stable, and relaxation found no stable equilibrium",
+                        SolverFailure::Kind::newton_stalled);
   }
 
   /// Against dashpots at rest at @p anchor. @returns false where that has no solution, or one that is not stable in

@@ -39,6 +39,11 @@ namespace Nodus
     void solve_increment();
     /// The same by relaxation alone, where smaller increments do not help.
     void relax_increment();
+    /// The motion that was resisted least in the last states, empty where none has been followed (Stability).
+    const Vector &softest_motion() const
+    {
+      return stability_.mode();
+    }
     bool may_relax() const
     {
       return model_.parameters.strategy.uses(Remedy::relaxation) && stability_.can_count();

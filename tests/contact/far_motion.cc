@@ -6,6 +6,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
+
 using namespace Cases;
 
 namespace
@@ -45,6 +47,40 @@ namespace
     const auto contact = problem.contact_resultants();
     return {{contact[0].slave_force[2], contact[1].slave_force[2]}};
   }
+
+  /// A block on a plate travels 1000 with it and is then pressed a tenth harder, by 1e-7 of its modulus: round-off of
+  /// the displacements is a millionth of the forces. It is no failure of Newton's method.
+  void press_far_away()
+  {
+    Parameters p;
+    p.bodies = {box("block", "3,3,3", {0.1, 0.1, 1}, {0.9, 0.9, 1.8}, 1000, 0.3),
+                box("plate", "4,4,2", {0, 0, 0}, {1, 1, 1}, 1000, 0.3)};
+    for (auto &body : p.bodies)
+      body.material.law = MaterialParameters::Law::neo_hookean;
+    p.boundary_conditions                   = {hold("ground", region(2, {z_minus}), {1, 2}),
+                                               hold("guide", region(1, {z_plus}), {1}),
+                                               drive("travel", region(2, {z_minus}), 0, "1000*min(t,1)"),
+                                               drive("travel of the block", region(1, {z_plus}), 0, "1000*min(t,1)"),
+                                               condition("load",
+                                       BoundaryConditionParameters::Type::traction,
+                                       region(1, {z_plus}),
+                                       {2},
+                                       {"-1e-3*min(t,1)-1e-4*max(0,t-1)"})};
+    p.contact_pairs                         = {pair(region(1, {z_minus}), region(2, {z_plus}))};
+    p.contact_pairs[0].friction_coefficient = 0.3;
+    p.load_stepping.interval_ends           = {1., 2.};
+    p.load_stepping.increments              = {1, 2};
+    p.load_stepping.cut_back                = false;
+    p.output.results_folder                 = "far_motion_results";
+    p.output.vtu_interval                   = 0;
+    ContactProblem problem(p, world(), log());
+    unsigned int   most = 0;
+    problem.on_increment([&](const unsigned int increment, double)
+                         { most = increment > 1 ? std::max(most, problem.iterations().newton) : 0; });
+    problem.run();
+    check("pressed 1000 away: force", problem.contact_resultants()[0].slave_force[2], 1.1e-3 * 0.64, 1e-5);
+    check_count("  most Newton iterations of an increment there", most, 4);
+  }
 } // namespace
 
 int main(int argc, char **argv)
@@ -64,4 +100,5 @@ int main(int argc, char **argv)
         check(from + std::string(", pin ") + std::to_string(pin + 1), force[pin], reference[pin], 1e-6);
     }
   }
+  press_far_away();
 }

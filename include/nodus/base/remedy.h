@@ -23,15 +23,15 @@ namespace Nodus
   };
 
   constexpr std::array<const char *, 10> remedy_names = {{"three loops",
-                                                         "coupled threshold",
-                                                         "relaxation",
-                                                         "mixed geometry",
-                                                         "mixed thresholds",
-                                                         "regularised law",
-                                                         "frozen statuses",
-                                                         "shorter step",
-                                                         "limited step",
-                                                         "direct solver"}};
+                                                          "coupled threshold",
+                                                          "relaxation",
+                                                          "mixed geometry",
+                                                          "mixed thresholds",
+                                                          "regularised law",
+                                                          "frozen statuses",
+                                                          "shorter step",
+                                                          "limited step",
+                                                          "direct solver"}};
 
   /// A value for each remedy: how often it was used, whether it may be.
   template <typename T>

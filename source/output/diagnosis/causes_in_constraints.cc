@@ -75,6 +75,46 @@ namespace Nodus
       causes.push_back(cause);
     }
 
+    void add_instability(const Parameters      &parameters,
+                         const History         &history,
+                         const FailureEvidence &evidence,
+                         Causes                &causes)
+    {
+      using Type = BoundaryConditionParameters::Type;
+      SuspectedCause cause{"the bodies are not stable: they buckle, snap through or soften", {}, {}};
+      cause.evidence.push_back("the tangent of iterates had more negative eigenvalues than there are multipliers");
+      if (evidence.motion_known && !evidence.state.empty())
+        cause.evidence.push_back("the motion that was resisted least when the last increment had converged is the "
+                                 "field softest_motion of " +
+                                 evidence.state);
+      const auto &without = parameters.strategy.without;
+      if (!parameters.strategy.uses(Remedy::relaxation))
+      {
+        std::string others;
+        for (const std::string &name : without)
+          if (name != remedy_names[static_cast<unsigned int>(Remedy::relaxation)])
+            others += (others.empty() ? "" : ", ") + name;
+        cause.changes.push_back({"Strategy/Without",
+                                 "with relaxation",
+                                 others,
+                                 "the bodies creep into the stable equilibrium that they would snap into"});
+      }
+      else if (evidence.relaxed)
+        cause.evidence.push_back("relaxation found no stable equilibrium under the loads of this increment");
+      for (unsigned int c = 0; c < parameters.boundary_conditions.size(); ++c)
+      {
+        const auto &condition = parameters.boundary_conditions[c];
+        if (condition.type == Type::traction || condition.type == Type::pressure || condition.type == Type::body_force)
+          cause.changes.push_back({text("Boundary condition ", c + 1, "/Type"),
+                                   text_of(condition.type),
+                                   "displacement",
+                                   "beyond the largest load that the bodies carry there is no equilibrium; a "
+                                   "prescribed displacement of the same place follows them"});
+      }
+      add_smaller_increments(parameters, history, cause);
+      causes.push_back(cause);
+    }
+
     void
     add_free_body(const Parameters &parameters, const History &history, const FailureEvidence &evidence, Causes &causes)
     {

@@ -315,6 +315,19 @@ namespace Nodus
     return of_site;
   }
 
+  std::string Diagnosis::summary(const FailureEvidence &evidence) const
+  {
+    const std::vector<SuspectedCause> causes = suspected_causes(parameters_, history_, evidence);
+    std::string                       text   = causes.front().name;
+    for (const SuspectedCause &cause : causes)
+      if (!cause.changes.empty())
+      {
+        const SuspectedCause::Change &change = cause.changes.front();
+        return text + "; try '" + change.key + " = " + change.proposed + "': " + change.reason;
+      }
+    return text;
+  }
+
   std::string Diagnosis::write(const FailureEvidence &evidence) const
   {
     if (dealii::Utilities::MPI::this_mpi_process(communicator_) != 0)

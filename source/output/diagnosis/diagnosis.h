@@ -64,7 +64,10 @@ namespace Nodus
     std::vector<Site> changing_sites; ///< the most changes first
     unsigned int      n_changed_sites = 0;
 
-    bool may_shrink = true; ///< smaller increments are worth a try
+    bool may_shrink   = true;  ///< smaller increments are worth a try
+    bool unstable     = false; ///< iterates had more negative eigenvalues than multipliers
+    bool relaxed      = false; ///< relaxation was tried
+    bool motion_known = false; ///< the state file has the motion that was resisted least
 
     std::vector<std::string> free_motions; ///< rigid motions that nothing resists (contact/free_motions.h)
     std::vector<std::string> left_free;    ///< what would be left of them if all sites with a master point were closed
@@ -177,6 +180,8 @@ namespace Nodus
       return history_;
     }
 
+    /// The first suspected cause and what is the most promising to change, in one sentence, the same on every rank.
+    std::string summary(const FailureEvidence &evidence) const;
     /// The page. @returns what went wrong, on rank 0.
     std::string write(const FailureEvidence &evidence) const;
 

@@ -332,6 +332,8 @@ namespace Nodus
       add_coarse_slave(parameters, evidence, causes);
     if (kind == Kind::over_constraint)
       add_over_constraint(parameters, evidence, causes);
+    if (evidence.unstable && kind != Kind::free_body && kind != Kind::inverted_cell)
+      add_instability(parameters, history, evidence, causes);
     if (kind == Kind::free_body || (!evidence.free_motions.empty() && !in_a_loop && !statuses))
       add_free_body(parameters, history, evidence, causes);
     if (statuses)

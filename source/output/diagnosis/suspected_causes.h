@@ -40,6 +40,11 @@ namespace Nodus
                        const History         &history,
                        const FailureEvidence &evidence,
                        Causes                &causes);
+    /// It buckles, snaps through or softens.
+    void add_instability(const Parameters      &parameters,
+                         const History         &history,
+                         const FailureEvidence &evidence,
+                         Causes                &causes);
     /// Displacements of both sides of a contact are prescribed.
     void add_prescribed_contact(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
     void add_over_constraint(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
