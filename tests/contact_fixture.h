@@ -50,7 +50,7 @@ struct ContactFixture
     geometry  = std::make_unique<Nodus::ContactGeometry>(pairs, *surfaces, paired_at);
     averaged.compute(pairs, *surfaces, *geometry, x, x);
     pairing.project(pairs, *surfaces, *geometry, averaged);
-    jump.build(pairs, *surfaces, *geometry, pairing, averaged);
+    jump.build(pairs, *surfaces, *geometry, pairing, averaged, *status);
     weights.compute(pairs, *surfaces, averaged, x, x);
   }
 

@@ -124,11 +124,8 @@ namespace Nodus
       return mine;
     }
 
-    /// Adds a face to the rows of its slave nodes that are here, and its full areas to @p full.
-    void add(const ContactSurfaces          &surfaces,
-             const FaceRows                 &face,
-             std::vector<AveragedJump::Row> &rows,
-             std::vector<double>            &full)
+    /// Adds a face to the rows of its slave nodes that are here.
+    void add(const ContactSurfaces &surfaces, const FaceRows &face, std::vector<AveragedJump::Row> &rows)
     {
       const unsigned int n         = (surfaces.degree() + 1) * (surfaces.degree() + 1);
       const unsigned int n_columns = face.nodes.size() + 2;
@@ -143,7 +140,7 @@ namespace Nodus
           if (w[b] != 0.)
             add(surfaces, b < n ? row.slave : row.master, surfaces.node(face.nodes[b]), w[b], row.offset);
         row.area += w[n_columns - 2];
-        full[k] += w[n_columns - 1];
+        row.whole += w[n_columns - 1];
         for (unsigned int c = 0; c < dim; ++c)
         {
           const double *const v = face.vectors.data() + FaceRows::n_vectors * a + c;
@@ -156,9 +153,9 @@ namespace Nodus
     }
 
     /// Sums over faces become means; a node with next to no partner loses its row.
-    void normalise(const double full_area, AveragedJump::Row &row)
+    void normalise(AveragedJump::Row &row)
     {
-      if (!(row.area > smallest_coverage * full_area))
+      if (!(row.area > smallest_coverage * row.whole))
       {
         row = AveragedJump::Row();
         return;
@@ -252,11 +249,10 @@ namespace Nodus
     }
     if (!any)
       return;
-    std::vector<double> full(surfaces.n_owned_slave_nodes(), 0.);
     for (const FaceRows &face : collect(surfaces, faces_, std::move(mine)))
-      add(surfaces, face, rows_, full);
-    for (unsigned int k = 0; k < full.size(); ++k)
-      normalise(full[k], rows_[k]);
+      add(surfaces, face, rows_);
+    for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
+      normalise(rows_[k]);
 
     std::vector<double> area(rows_.size());
     for (unsigned int k = 0; k < rows_.size(); ++k)

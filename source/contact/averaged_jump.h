@@ -26,7 +26,8 @@ namespace Nodus
     };
     struct Row
     {
-      double             area = 0.; ///< m_j = int psi_j over the covered part [area]
+      double             area  = 0.; ///< m_j = int psi_j over the covered part [area]
+      double             whole = 0.; ///< of the surface around the node, covered or not [area]
       std::vector<Entry> slave, master;
       Vector3            offset; ///< of smoothed surfaces: jump of the positions minus jump of the nodal ones [length]
       RigidPart          rigid;

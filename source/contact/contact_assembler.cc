@@ -247,7 +247,7 @@ namespace Nodus
     for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
       if (surfaces_.is_owned(s))
         for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
-          forces[e->node] += e->weight * residual.jump[s];
+          forces[e->node] += jump_.force(s, *e, residual.jump[s]);
     surfaces_.add(forces, force);
   }
 

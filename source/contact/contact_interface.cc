@@ -165,7 +165,7 @@ namespace Nodus
     geometry_ = std::make_unique<ContactGeometry>(pairs_, surfaces_, paired_at_);
     averaged_.compute(pairs_, surfaces_, *geometry_, paired_at_, surfaces_.reference_positions());
     pairing_.project(pairs_, surfaces_, *geometry_, averaged_);
-    jump_.build(pairs_, surfaces_, *geometry_, pairing_, averaged_);
+    jump_.build(pairs_, surfaces_, *geometry_, pairing_, averaged_, status_);
     weigh();
     if (now_.on_new_mesh)
       carry_over_sticking();

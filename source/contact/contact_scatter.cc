@@ -31,6 +31,8 @@ namespace Nodus
           shares_[s].body = body; // slave and master are not both rigid
           shares_[s].weight += e->weight;
           shares_[s].arm += e->weight * (state.x[e->node] - state.centre[body]);
+          if (e + 1 == jump.end(s)) // turns of a master as a whole: those of an arm that reaches to the slave
+            shares_[s].arm -= jump.lever(s) * jump.normal(s);
         }
   }
 
@@ -42,27 +44,46 @@ namespace Nodus
         law_residual_[4 * point.slaves[a] + 3] -= std::abs(law.nodes[a].shape) * Wt;
   }
 
-  /// Calls @p f with the flat index and the weight of everything that local unknown @p local consists of (eq. 35).
-  template <typename Function>
-  void ContactScatter::for_each_unknown(const ContactPoint &point,
-                                        const LawSum       &sum,
-                                        const unsigned int  local,
-                                        const Function     &f) const
+  /// All that the local unknowns of a point consist of (eq. 35).
+  void ContactScatter::find_unknowns(const ContactPoint &point, const LawSum &sum) const
   {
-    const BlockLayout &layout = surfaces_.layout();
-    if (local >= sum.first_node)
+    unknowns_.clear();
+    for (unsigned int a = 0; a < sum.first_node / 3; ++a)
     {
-      const DoFIndex     k = surfaces_.multiplier(point.slaves[(local - sum.first_node) / 3]);
-      const unsigned int l = (local - sum.first_node) % 3;
-      f(l == 0 ? layout.lambda(k) : layout.Lambda(k, l - 1), 1.);
-      return;
+      const unsigned int s = jump_site(point, a), first = 3 * a;
+      const Vector3     &n = jump_.normal(s);
+      for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          if (surfaces_.fixed(e->node, c))
+            continue;
+          const DoFIndex dof = surfaces_.nodes()[e->node].dofs[c];
+          if (e->turn == Vector3())
+            unknowns_.push_back({dof, first + c, 1, Vector3({e->weight, 0., 0.})});
+          else
+          {
+            unknowns_.push_back({dof, first, 3, n[c] * e->turn});
+            unknowns_.back().part[c] += e->weight;
+          }
+        }
+      for (unsigned int c = 0; c < dim && !shares_.empty() && shares_[s].weight != 0.; ++c)
+        surfaces_.for_each_rigid_unknown(shares_[s].body,
+                                         c,
+                                         shares_[s].weight,
+                                         shares_[s].arm,
+                                         [&](const DoFIndex index, const double part) {
+                                           unknowns_.push_back({index, first + c, 1, Vector3({part, 0., 0.})});
+                                         });
     }
-    const unsigned int s = jump_site(point, local / 3), l = local % 3;
-    for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
-      if (!surfaces_.fixed(e->node, l))
-        f(surfaces_.nodes()[e->node].dofs[l], e->weight);
-    if (!shares_.empty() && shares_[s].weight != 0.)
-      surfaces_.for_each_rigid_unknown(shares_[s].body, l, shares_[s].weight, shares_[s].arm, f);
+    const BlockLayout &layout = surfaces_.layout();
+    for (unsigned int a = 0; a < sum.n_nodes; ++a)
+    {
+      const DoFIndex     k     = surfaces_.multiplier(point.slaves[a]);
+      const unsigned int first = sum.first_node + 3 * a;
+      unknowns_.push_back({layout.lambda(k), first, 1, Vector3({1., 0., 0.})});
+      for (unsigned int i = 0; i < 2; ++i)
+        unknowns_.push_back({layout.Lambda(k, i), first + 1 + i, 1, Vector3({1., 0., 0.})});
+    }
   }
 
   /// Driven rigid bodies stand in the border (eq. R4), all else in @p inner.
@@ -105,22 +126,17 @@ namespace Nodus
         law_rhs_[3 * point.slaves[a] + l] += rhs(sum.first_node + 3 * a + l);
     }
 
-    for (unsigned int i = 0; i < n; ++i)
-      for (unsigned int j = 0; j < n; ++j)
-        if (const double value = A(i, j); value != 0.)
-          for_each_unknown(point,
-                           sum,
-                           i,
-                           [&](const DoFIndex row, const double row_weight)
-                           {
-                             for_each_unknown(
-                                 point,
-                                 sum,
-                                 j,
-                                 [&](const DoFIndex column, const double column_weight) {
-                                   add_entry(system.contact, row, column, row_weight * column_weight * value, system);
-                                 });
-                           });
+    find_unknowns(point, sum);
+    LocalVector row(n);
+    for (const Unknown &u : unknowns_)
+    {
+      row = u.part[0] * A.row(u.first).transpose();
+      for (unsigned int i = 1; i < u.n; ++i)
+        row += u.part[i] * A.row(u.first + i).transpose();
+      for (const Unknown &v : unknowns_)
+        if (const double value = v.of(row.data()); value != 0.)
+          add_entry(system.contact, u.index, v.index, value, system);
+    }
   }
 
   void ContactScatter::add_variation(const ContactPoint              &point,
@@ -129,16 +145,13 @@ namespace Nodus
                                      const Eigen::MatrixXd           &derivative,
                                      LinearSystem                    &system) const
   {
+    find_unknowns(point, sum);
     for (unsigned int m = 0; m < slaves.size(); ++m)
     {
       const DoFIndex lambda = surfaces_.layout().lambda(surfaces_.multiplier(slaves[m]));
-      for (unsigned int i = 0; i < sum.n_unknowns(); ++i)
-        if (const double value = derivative(i, m); value != 0.)
-          for_each_unknown(point,
-                           sum,
-                           i,
-                           [&](const DoFIndex row, const double weight)
-                           { add_entry(system.variation, row, lambda, weight * value, system); });
+      for (const Unknown &u : unknowns_)
+        if (const double value = u.of(derivative.col(m).data()); value != 0.)
+          add_entry(system.variation, u.index, lambda, value, system);
     }
   }
 
@@ -165,10 +178,16 @@ namespace Nodus
     }
     std::vector<Vector3> forces(surfaces_.nodes().size());
     for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
+    {
+      const Vector3 rhs({jump_rhs_[3 * s], jump_rhs_[3 * s + 1], jump_rhs_[3 * s + 2]});
       for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
+      {
+        const Vector3 force = jump_.force(s, *e, rhs);
         for (unsigned int c = 0; c < dim; ++c)
           if (!surfaces_.fixed(e->node, c))
-            forces[e->node][c] += e->weight * jump_rhs_[3 * s + c];
+            forces[e->node][c] += force[c];
+      }
+    }
     surfaces_.add(forces, system.rhs.block(0));
     system.border_rhs.assign(2 * dim * surfaces_.layout().n_rigid, 0.);
     for (unsigned int s = 0; s < shares_.size(); ++s)

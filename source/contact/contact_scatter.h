@@ -60,15 +60,31 @@ namespace Nodus
       Vector3      arm;
     };
 
-    template <typename Function>
-    void for_each_unknown(const ContactPoint &point, const LawSum &sum, unsigned int local, const Function &f) const;
+    /// An unknown of the system in the local ones of a point: in one of them, or in the components of a jump.
+    struct Unknown
+    {
+      DoFIndex     index; ///< flat
+      unsigned int first, n;
+      Vector3      part;
+
+      double of(const double *const local) const
+      {
+        double sum = part[0] * local[first];
+        for (unsigned int i = 1; i < n; ++i)
+          sum += part[i] * local[first + i];
+        return sum;
+      }
+    };
+
+    void find_unknowns(const ContactPoint &point, const LawSum &sum) const;
     void add_entry(TripletMatrix &inner, DoFIndex row, DoFIndex column, double value, LinearSystem &system) const;
     void add_resultant(std::vector<double> &sum, const RigidShare &share, const Vector3 &force) const;
 
-    const ContactSurfaces  &surfaces_;
-    const JumpOperator     &jump_;
-    const ContactState     &state_;
-    std::vector<RigidShare> shares_; ///< of the sites, empty without driven bodies
+    const ContactSurfaces       &surfaces_;
+    const JumpOperator          &jump_;
+    const ContactState          &state_;
+    std::vector<RigidShare>      shares_;   ///< of the sites, empty without driven bodies
+    mutable std::vector<Unknown> unknowns_; ///< scratch
     /// Three components of each jump; lambda, two Lambda and, in the residual, the friction weight of each slave node.
     /// The points of this rank add to ghosts, too.
     std::vector<double> jump_residual_, jump_rhs_, law_residual_, law_rhs_;

@@ -176,7 +176,7 @@ namespace Nodus
       const auto hold_towards = [&](const Vector3 &direction)
       {
         for (auto e = jump.begin(s); e != jump.end(s); ++e)
-          take(std::lround(body_of[e->node][0]), state.x[e->node], e->weight * direction);
+          take(std::lround(body_of[e->node][0]), state.x[e->node], jump.force(s, *e, direction));
         hold();
       };
       hold_towards(pairing[s].normal);

@@ -73,7 +73,7 @@ namespace Nodus
                              GeometryCouplings     &couplings) const
   {
     variation.clear();
-    for (const Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
+    for (const JumpOperator::Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
     {
       variation.node(e->node);
       variation.column(e->node);
@@ -140,9 +140,9 @@ namespace Nodus
       const AveragedJump::Row &row = averaged_.row(site);
       jump                         = row.offset - row.rigid.x;
       for (const auto *const entries : {&row.slave, &row.master})
-        for (const Entry &e : *entries)
+        for (const AveragedJump::Entry &e : *entries)
           jump += e.weight * state.x[e.node];
-      for (const Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
+      for (const JumpOperator::Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
         gap.segment<3>(3 * variation.place_of_source(e->node)) +=
             (variation.weights()[variation.place_of_node(e->node)] - e->weight) * eigen(n);
     }
@@ -162,18 +162,31 @@ namespace Nodus
     Matrix        slip = -rows.middleRows<3>(variation.moved());
     for (unsigned int e = 0; e < variation.nodes().size(); ++e)
       slip += eigen(state.increment[variation.nodes()[e]]).transpose() * rows.row(e);
-    const auto normal = rows.middleRows<3>(variation.normal());
+    const auto   normal = rows.middleRows<3>(variation.normal());
+    const Matrix lever  = lever_variation(site, state, variation);
+    if (lever.size() > 0)
+      for (const JumpOperator::Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
+        slip += eigen(e->turn).transpose() *
+                (pairing_[site].normal * state.increment[e->node] * lever + eigen(state.increment[e->node]) * normal);
 
     const Matrix turned =
         eigen(law.force_normal) * normal + eigen(law.force_slip) * slip + eigen(law.force_area).transpose() * area;
     const Eigen::Vector3d force = eigen(residual.jump[site]).transpose();
+    const Eigen::Vector3d along = eigen(pairing_[site].normal).transpose();
     std::vector<double>   weight(variation.nodes().size(), 0.);
-    for (const Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
+    std::vector<Vector3>  turn(variation.nodes().size());
+    for (const JumpOperator::Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
+    {
       weight[variation.place_of_node(e->node)] = e->weight;
+      turn[variation.place_of_node(e->node)]   = e->turn;
+    }
     Matrix block(dim, rows.cols());
     for (unsigned int e = 0; e < variation.nodes().size(); ++e)
     {
       block = force * rows.row(e) + weight[e] * turned;
+      if (turn[e] != Vector3())
+        block += along * (eigen(turn[e]) * turned + turn[e] * residual.jump[site] * lever) +
+                 turn[e] * residual.jump[site] * normal;
       couplings.add_force(variation.nodes()[e], variation.columns(), block);
     }
     if (weight_[site] > 0. && status_.friction(site))
@@ -183,6 +196,29 @@ namespace Nodus
         friction.row(i) = eigen(law.row_normal[i]) * normal + eigen(law.row_slip[i]) * slip + law.row_area[i] * area;
       couplings.add_friction(site, variation.columns(), friction);
     }
+  }
+
+  /// Relative variation of the lever of a site, by which its turns change (eq. G33); empty where there is none.
+  GeometryTangent::Matrix GeometryTangent::lever_variation(const unsigned int   site,
+                                                           const ContactState  &state,
+                                                           const SiteVariation &variation) const
+  {
+    if (jump_.lever(site) == 0.)
+      return Matrix();
+    const Vector3 &n      = pairing_[site].normal;
+    const Point   &origin = state.x[jump_.begin(site)->node];
+    const Matrix  &rows   = variation.rows();
+    Matrix         lever  = Matrix::Zero(1, rows.cols());
+    Vector3        apart;
+    for (unsigned int e = 0; e < variation.nodes().size(); ++e)
+      lever += n * (state.x[variation.nodes()[e]] - origin) * rows.row(e);
+    for (const JumpOperator::Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
+    {
+      lever.middleCols<3>(3 * variation.place_of_source(e->node)) += e->weight * eigen(n);
+      apart += e->weight * (state.x[e->node] - origin);
+    }
+    lever += eigen(apart) * rows.middleRows<3>(variation.normal());
+    return lever / jump_.lever(site);
   }
 
   /// With the rule of Pairing: the first tangent is the projection of a fixed direction, or lies across the held one.

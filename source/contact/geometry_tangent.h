@@ -46,7 +46,6 @@ namespace Nodus
   private:
     using Matrix3 = dealii::Tensor<2, dim>;
     using Matrix  = SiteVariation::Matrix;
-    using Entry   = JumpOperator::Entry;
 
     /// How the force of a site and its friction law follow normal, area and slip.
     struct Law
@@ -73,19 +72,20 @@ namespace Nodus
     void
     add_rigid_slide(unsigned int site, const Motion &motion, unsigned int coordinate, SiteVariation &variation) const;
 
-    void vary(unsigned int           site,
-              const ContactState    &state,
-              const ContactResidual &residual,
-              bool                   follows,
-              VariedFaces           &faces,
-              SiteVariation         &variation,
-              GeometryCouplings     &couplings) const;
-    void couple(unsigned int           site,
+    void   vary(unsigned int           site,
                 const ContactState    &state,
                 const ContactResidual &residual,
-                const Law             &law,
-                const SiteVariation   &variation,
+                bool                   follows,
+                VariedFaces           &faces,
+                SiteVariation         &variation,
                 GeometryCouplings     &couplings) const;
+    void   couple(unsigned int           site,
+                  const ContactState    &state,
+                  const ContactResidual &residual,
+                  const Law             &law,
+                  const SiteVariation   &variation,
+                  GeometryCouplings     &couplings) const;
+    Matrix lever_variation(unsigned int site, const ContactState &state, const SiteVariation &variation) const;
     /// Adds how gaps follow the parts of the offsets of smoothed faces (eq. G9).
     void add_parts(unsigned int site, const FaceVariation &face, unsigned int a, GeometryCouplings &couplings) const;
     /// Variation of the gap without that at fixed geometry (eq. G13). It needs the variation of the row before the

@@ -8,9 +8,23 @@
 
 namespace Nodus
 {
+  std::pair<double, double> MomentBalance::inverse_of_spread(const double spread, const double size)
+  {
+    const double part = spread / (size * size);
+    if (!(part > no_spread))
+      return {0., 0.};
+    const double t      = std::min(1., (part - no_spread) / (full_spread - no_spread));
+    const double growth = 6. * t * (1. - t) / ((full_spread - no_spread) * size * size);
+    const double value  = t * t * (3. - 2. * t) / spread;
+    return {value, (growth - value) / spread};
+  }
+
   namespace
   {
     using namespace MomentBalance;
+    /// Shorter levers are round-off, of sizes of the surface around the slave node.
+    constexpr double smallest_lever = 1e-13;
+
     using Entry = JumpOperator::Entry;
 
     /// A row of G while it is put together.
@@ -20,6 +34,7 @@ namespace Nodus
       std::vector<Entry>     slave = {}, master = {};
       RigidPart              rigid  = {};
       Vector3                offset = {}; ///< jump of the positions minus that of the nodal ones
+      double                 lever  = 0.;
 
       void clear()
       {
@@ -27,6 +42,14 @@ namespace Nodus
         master.clear();
         rigid  = RigidPart();
         offset = Vector3();
+        lever  = 0.;
+      }
+      Point mean_slave_point(const std::vector<Point> &x) const
+      {
+        Point mean;
+        for (const Entry &e : slave)
+          mean += e.weight * Vector3(x[e.node]);
+        return mean;
       }
       /// Adds @p weight times a node to @p side, #slave or #master. A hanging node is where those are that it follows,
       /// but for its reference position.
@@ -37,7 +60,7 @@ namespace Nodus
           const auto at =
               std::find_if(side.begin(), side.end(), [free_node](const Entry &e) { return e.node == free_node; });
           if (at == side.end())
-            side.push_back({free_node, part});
+            side.push_back({free_node, part, {}});
           else
             at->weight += part;
         };
@@ -52,18 +75,20 @@ namespace Nodus
       }
     };
 
-    /// Balances moments (eq. J4). Averaged gaps vanish in the mean alone: gaps that are left between the points, on
-    /// masters that are not flat, put the mean master point beside the normal through the slave node, and forces along
-    /// that would turn the bodies. The master weights are changed by the least amount, relative to themselves, that
-    /// puts it on the normal; the distance along it stays. As changes are relative, a node whose weight grows from zero
-    /// comes in without a jump.
-    void balance_moment(const SitePairing &site, const double size, const std::vector<Point> &x, Row &row)
+    /// Balances moments. Averaged gaps vanish in the mean alone: gaps that are left between the points, on masters that
+    /// are not flat, put the mean master point beside the normal through the slave node, and forces along that would
+    /// turn the bodies. The master weights are changed by the least amount, relative to themselves, that puts it on the
+    /// normal (eq. J4); the distance along it stays. As changes are relative, a node whose weight grows from zero comes
+    /// in without a jump. Friction acts with that distance as its lever: its moment is taken up by forces along the
+    /// normal, and what the master turns counts as slip at the slave (eq. J5).
+    void balance_moment(
+        const SitePairing &site, const double size, const bool friction, const std::vector<Point> &x, Row &row)
     {
-      Vector3 beside, mean;
+      Vector3 apart, mean;
       double  sum = 0.;
       for (const auto *const side : {&row.slave, &row.master})
         for (const Entry &e : *side)
-          beside += e.weight * x[e.node];
+          apart += e.weight * x[e.node];
       for (const Entry &e : row.master)
       {
         mean += std::abs(e.weight) * x[e.node];
@@ -75,40 +100,48 @@ namespace Nodus
       Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
       for (const Entry &e : row.master)
       {
-        const Eigen::Vector2d d = components(x[e.node] - mean);
-        spread += std::abs(e.weight) * d * d.transpose();
+        const Eigen::Vector2d y = components(x[e.node] - mean);
+        spread += std::abs(e.weight) * y * y.transpose();
       }
-      Eigen::Vector2d shift = components(beside);
-      shift *= std::min(1., largest_shift * size / std::max(shift.norm(), std::numeric_limits<double>::min()));
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
-      Eigen::Vector2d                                      slope = Eigen::Vector2d::Zero();
+      Eigen::Vector2d                                      value;
       for (unsigned int i = 0; i < 2; ++i)
-      {
-        const double part = axes.eigenvalues()[i] / (sum * size * size);
-        if (!(part > no_spread))
-          continue; // nodes in a line across it
-        const double t = std::min(1., (part - no_spread) / (full_spread - no_spread));
-        slope += t * t * (3. - 2. * t) / axes.eigenvalues()[i] * axes.eigenvectors().col(i).dot(shift) *
-                 axes.eigenvectors().col(i);
-      }
+        value[i] = inverse_of_spread(axes.eigenvalues()[i], size).first;
+      const Eigen::Matrix2d inverse = axes.eigenvectors() * value.asDiagonal() * axes.eigenvectors().transpose();
+      const double          limit   = largest_shift * size;
+      Eigen::Vector2d       beside  = components(apart);
+      beside *= std::min(1., limit / std::max(beside.norm(), std::numeric_limits<double>::min()));
+      double lever = apart * site.normal;
       for (Entry &e : row.master)
       {
-        const double change = -std::abs(e.weight) * components(x[e.node] - mean).dot(slope);
+        const Vector3         arm    = x[e.node] - mean;
+        const Eigen::Vector2d slope  = std::abs(e.weight) * inverse * components(arm);
+        const double          change = -slope.dot(beside), along = change * (arm * site.normal);
         e.weight += change;
-        row.offset -= change * (x[e.node] * site.normal) * site.normal;
+        e.turn = slope[0] * site.tangent[0] + slope[1] * site.tangent[1];
+        row.offset -= along * site.normal;
+        lever += along;
       }
+      if (friction && std::abs(lever) > smallest_lever * size)
+        row.lever = std::clamp(lever, -limit, limit);
+      for (Entry &e : row.master)
+        e.turn *= row.lever;
     }
 
     /// Of a slave node with averages over its faces.
-    void
-    make_averaged(const AveragedJump::Row &averages, const SitePairing &site, const std::vector<Point> &x, Row &row)
+    void make_averaged(const AveragedJump::Row  &averages,
+                       const SitePairing        &site,
+                       const bool                friction,
+                       const std::vector<Point> &x,
+                       Row                      &row)
     {
-      row.slave  = averages.slave;
-      row.master = averages.master;
-      row.rigid  = averages.rigid;
+      for (const AveragedJump::Entry &e : averages.slave)
+        row.slave.push_back({e.node, e.weight, {}});
+      for (const AveragedJump::Entry &e : averages.master)
+        row.master.push_back({e.node, e.weight, {}});
       row.offset = averages.offset - averages.rigid.x;
       if (!row.master.empty())
-        balance_moment(site, std::sqrt(averages.area), x, row);
+        balance_moment(site, std::sqrt(averages.whole), friction, x, row);
     }
 
     /// Of a slave node or an integration point against the point that it is projected on.
@@ -121,8 +154,7 @@ namespace Nodus
       if (rigid != nullptr)
       {
         on_rigid   = rigid->closest(geometry.position(surfaces, s)).x;
-        row.rigid  = rigid->part(on_rigid);
-        row.offset = -row.rigid.x;
+        row.offset = -rigid->part(on_rigid).x;
       }
       else
         row.offset = -geometry.master[p].offset(master.face, master.xi, master.eta);
@@ -134,7 +166,7 @@ namespace Nodus
         row.offset += geometry.slave[p].offset(point.face, point.xi, point.eta);
       }
       else
-        row.slave.push_back({surfaces.slave_nodes()[s].node, 1.});
+        row.slave.push_back({surfaces.slave_nodes()[s].node, 1., {}});
       if (rigid != nullptr && rigid->carrier() != nullptr)
       {
         const RigidCarrier::Weights weights = rigid->carrier()->weights(on_rigid);
@@ -153,7 +185,8 @@ namespace Nodus
                            const ContactSurfaces                    &surfaces,
                            const ContactGeometry                    &geometry,
                            const Pairing                            &pairing,
-                           const AveragedJump                       &averaged)
+                           const AveragedJump                       &averaged,
+                           const Status                             &status)
   {
     entries_.clear();
     start_.assign(1, 0);
@@ -161,6 +194,8 @@ namespace Nodus
     offset_.clear();
     rigid_.clear();
     stuck_.clear();
+    normal_.clear();
+    lever_.clear();
     Row row{surfaces};
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
     {
@@ -168,14 +203,18 @@ namespace Nodus
       const bool         paired = pairing[s].found || pairing[s].held;
       row.clear();
       if (paired && pairs[p].scheme == ContactPairParameters::Scheme::averaged)
-        make_averaged(averaged.row(s), pairing[s], geometry.slave[p].positions(), row);
+        make_averaged(averaged.row(s), pairing[s], status.has_friction(p), geometry.slave[p].positions(), row);
       else if (paired && (pairing[s].master.found() || geometry.rigid[p] != nullptr))
         make_pointwise(s, geometry, pairing[s].master, row);
+      if (const RigidSurface *const rigid = geometry.rigid[p]; rigid != nullptr && !row.slave.empty())
+        row.rigid = rigid->part(row.mean_slave_point(geometry.slave[p].positions()));
       entries_.insert(entries_.end(), row.slave.begin(), row.slave.end());
       middle_.push_back(entries_.size());
       entries_.insert(entries_.end(), row.master.begin(), row.master.end());
       start_.push_back(entries_.size());
       offset_.push_back(row.offset);
+      normal_.push_back(pairing[s].normal);
+      lever_.push_back(row.lever);
       rigid_.push_back(row.rigid);
     }
   }

@@ -3,20 +3,24 @@
 
 #include "contact/averaged_jump.h"
 #include "contact/pairing.h"
+#include "contact/status.h"
 #include "contact/surface.h"
 
+#include <utility>
 #include <vector>
 
 namespace Nodus
 {
-  /// Bounds on the change of averaged master weights that keeps forces from turning the bodies.
+  /// Bounds on the changes of averaged rows that keep forces from turning the bodies.
   namespace MomentBalance
   {
-    /// Largest shift of a mean master point, in sizes of the surface of its slave node: of sites far from contact.
-    constexpr double largest_shift = 0.1;
-    /// Mean square distance of the master nodes, over the surface of the slave node, at which their mean is not moved,
-    /// and from which on it is in full.
-    constexpr double no_spread = 1e-3, full_spread = 1e-2;
+    /// Largest shift of a mean master point, in sizes of the surface around its slave node: of sites far from contact.
+    constexpr double largest_shift = 0.5;
+    /// Mean square distance of the master nodes, over the surface around the slave node, at which their mean is not
+    /// moved, as they are in a line, and from which on it is in full.
+    constexpr double no_spread = 1e-6, full_spread = 1e-5;
+    /// 1 / @p spread [1/area], or less where that is little, and its derivative. @p size: of the surface [length].
+    std::pair<double, double> inverse_of_spread(double spread, double size);
   } // namespace MomentBalance
 
   /// G: the jump of each contact site as a combination of nodal values, slave minus master (eq. 18, 22).
@@ -27,7 +31,23 @@ namespace Nodus
   class JumpOperator
   {
   public:
-    using Entry = AveragedJump::Entry;
+    /// A node in the jump of a site, [[u]] += weight u + turn (n . u) with the normal n of the site.
+    struct Entry
+    {
+      unsigned int node; ///< index into ContactSurfaces::nodes()
+      double       weight;
+      Vector3      turn; ///< along the surface: what its turns add to the slip of points that are apart (eq. J5)
+
+      Vector3 jump(const Vector3 &normal, const Vector3 &u) const
+      {
+        return weight * u + (normal * u) * turn;
+      }
+      /// What it gets of the residual r of the jump: the transposed operator.
+      Vector3 force(const Vector3 &normal, const Vector3 &r) const
+      {
+        return weight * r + (turn * r) * normal;
+      }
+    };
 
     /// Sites without partner have no entry, nor have ghosts of the averaged scheme and those whose partner is not here:
     /// no point of this rank's faces needs them.
@@ -35,7 +55,8 @@ namespace Nodus
                const ContactSurfaces                    &surfaces,
                const ContactGeometry                    &geometry,
                const Pairing                            &pairing,
-               const AveragedJump                       &averaged);
+               const AveragedJump                       &averaged,
+               const Status                             &status);
 
     /// Entries of the row: slave nodes (weights of sum 1) from begin to middle, master nodes or those that carry a
     /// rigid master (of sum -1, none where that moves as prescribed) to end.
@@ -57,8 +78,23 @@ namespace Nodus
     {
       Vector3 result;
       for (const Entry *e = begin(site); e != end(site); ++e)
-        result += e->weight * displacement[e->node];
+        result += e->jump(normal_[site], displacement[e->node]);
       return result;
+    }
+    /// What an entry of the row of a site gets of the residual of the jump.
+    Vector3 force(const unsigned int site, const Entry &e, const Vector3 &residual) const
+    {
+      return e.force(normal_[site], residual);
+    }
+    const Vector3 &normal(const unsigned int site) const
+    {
+      return normal_[site];
+    }
+    /// How far the nodes of the slave are beyond those of the master along the normal, in pairs with friction: at closed
+    /// sites what smoothed surfaces are off their facets, and overlaps that count as none [length].
+    double lever(const unsigned int site) const
+    {
+      return lever_[site];
     }
     /// Jump of the displacement of the increment (eq. K2): with the way of a rigid master and, on a new mesh, what
     /// set_stuck() adds.
@@ -80,7 +116,7 @@ namespace Nodus
         result += e->weight * positions[e->node];
       return result;
     }
-    /// Part of a rigid master in the jump, zero where there is none.
+    /// Part of a rigid master in the jump, at the point where the slave is; zero where there is none.
     const RigidPart &rigid(const unsigned int site) const
     {
       return rigid_[site];
@@ -89,7 +125,8 @@ namespace Nodus
   private:
     std::vector<Entry>        entries_;
     std::vector<unsigned int> start_, middle_;
-    std::vector<Vector3>      offset_;
+    std::vector<Vector3>      offset_, normal_;
+    std::vector<double>       lever_;
     std::vector<RigidPart>    rigid_;
     std::vector<Vector3>      stuck_; ///< empty, or per site
   };

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <tuple>
 
 namespace Nodus
 {
@@ -165,59 +165,45 @@ namespace Nodus
     Eigen::Matrix2d    spread = Eigen::Matrix2d::Zero();
   };
 
-  /// slope = H(spread, scale) shift, scale being the sum of the weights times the area, and its derivatives.
+  /// slope = H(spread) shift, and its derivatives.
   struct SiteVariation::Slope
   {
-    Slope(const Eigen::Matrix2d &spread, const double scale, const double size, const Eigen::Vector2d &beside)
+    Slope(const Eigen::Matrix2d &spread, const double size, const Eigen::Vector2d &beside)
     {
-      using namespace MomentBalance;
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(spread);
       axes = solver.eigenvectors();
       Eigen::Vector2d d_value;
       for (unsigned int i = 0; i < 2; ++i)
-      {
-        const double eigenvalue = solver.eigenvalues()[i], part = eigenvalue / scale;
-        value[i] = d_value[i] = to_scale[i] = 0.;
-        if (!(part > no_spread))
-          continue;
-        const double t      = std::min(1., (part - no_spread) / (full_spread - no_spread));
-        const double growth = 6. * t * (1. - t) / (full_spread - no_spread);
-        value[i]            = t * t * (3. - 2. * t) / eigenvalue;
-        d_value[i]          = growth / (scale * eigenvalue) - value[i] / eigenvalue;
-        to_scale[i]         = -growth * part / (scale * eigenvalue);
-      }
+        std::tie(value[i], d_value[i]) = MomentBalance::inverse_of_spread(solver.eigenvalues()[i], size);
       const Eigen::Vector2d mu    = solver.eigenvalues();
       const double          apart = mu[1] - mu[0];
       divided << d_value[0], 0., 0., d_value[1];
       divided(0, 1) = divided(1, 0) =
           apart > 1e-6 * mu[1] ? (value[1] - value[0]) / apart : 0.5 * (d_value[0] + d_value[1]);
 
-      const double length = beside.norm(), limit = largest_shift * size;
-      shift   = beside;
-      to_size = Eigen::Vector2d::Zero();
+      const double length = beside.norm(), limit = MomentBalance::largest_shift * size;
+      shift = beside;
       to_beside.setIdentity();
       if (length > limit)
       {
         shift     = limit / length * beside;
-        to_size   = largest_shift / length * beside;
         to_beside = limit / length * (Eigen::Matrix2d::Identity() - beside * beside.transpose() / (length * length));
       }
       slope = axes * value.asDiagonal() * axes.transpose() * shift;
     }
     Eigen::Matrix2d axes, divided, to_beside;
-    Eigen::Vector2d value, to_scale, shift, to_size, slope;
+    Eigen::Vector2d value, shift, slope;
   };
 
   namespace
   {
-    /// Rows of the variations of beside, mean, spread (00, 11, 01) and sum.
+    /// Rows of the variations of beside, mean and spread (00, 11, 01).
     enum : Eigen::Index
     {
       to_beside = 0,
       to_mean   = 2,
       to_spread = 4,
-      to_sum    = 7,
-      n_rows    = 8
+      n_rows    = 7
     };
   } // namespace
 
@@ -244,7 +230,6 @@ namespace Nodus
     {
       const unsigned int column = 3 * place_of_source_[nodes_[e.node]];
       const auto         row_e  = rows_.row(e.node);
-      slopes_.row(to_sum) += e.sign * row_e;
       for (unsigned int k = 0; k < 3; ++k)
       {
         const unsigned int i = k == 1 ? 1 : 0, j = k == 0 ? 0 : 1;
@@ -269,9 +254,8 @@ namespace Nodus
                               const std::vector<Point>     &x)
   {
     const Moments         moments(*this, site, row, x);
-    const double          size = std::sqrt(row.area);
     const Eigen::Vector2d beside(moments.beside * site.tangent[0], moments.beside * site.tangent[1]);
-    const Slope           slope(moments.spread, moments.sum * row.area, size, beside);
+    const Slope           slope(moments.spread, std::sqrt(row.whole), beside);
     const Eigen::Matrix3d d_t[2]  = {eigen(turn[0]), eigen(turn[1])};
     const auto            normals = rows_.middleRows<3>(normal());
 
@@ -290,10 +274,7 @@ namespace Nodus
       to_slope.col(to_spread + k) =
           slope.axes * slope.divided.cwiseProduct(slope.axes.transpose() * unit * slope.axes) * s;
     }
-    const Eigen::Vector2d to_scale = slope.axes * slope.to_scale.cwiseProduct(s);
-    to_slope.col(to_sum)           = row.area * to_scale;
-    Matrix d_slope                 = to_slope * slopes_;
-    d_slope += (moments.sum * to_scale + H * slope.to_size / (2. * size)) * rows_.row(area());
+    const Matrix d_slope = to_slope * slopes_;
 
     const Eigen::RowVectorXd with_mean = slope.slope.transpose() * slopes_.middleRows<2>(to_mean);
     const Eigen::RowVector3d along = slope.slope[0] * eigen(site.tangent[0]) + slope.slope[1] * eigen(site.tangent[1]);

@@ -163,6 +163,10 @@ namespace Nodus
     std::vector<double> thresholds_at(const std::vector<double> &site_pressure) const;
     /// Freezes these instead, which need not belong to a pressure; right at owned sites. Collective.
     void freeze(std::vector<double> thresholds);
+    bool has_friction(const unsigned int pair) const
+    {
+      return limits_[pair].exists();
+    }
     /// Whether some pair has friction at all; friction that depends on the pressure; friction that depends on position
     /// or slip rate.
     bool has_friction() const

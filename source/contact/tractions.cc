@@ -314,7 +314,7 @@ namespace Nodus
       {
         // the residual is minus the force on the body
         const bool    slave  = e < jump.middle(i);
-        const Vector3 force  = -e->weight * residual.jump[i];
+        const Vector3 force  = -jump.force(i, *e, residual.jump[i]);
         const Vector3 moment = dealii::cross_product_3d(Vector3(state.x[e->node]), force);
         (slave ? result.slave_force : result.master_force) += force;
         (slave ? result.slave_moment : result.master_moment) += moment;

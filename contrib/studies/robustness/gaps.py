@@ -13,24 +13,34 @@ TOLERANCE = 0.05  # Projection tolerance by default [face sizes]; sites that wer
 
 class Rows:
     """Sites of a pair: distance (k,), normal (k, 3), area (k,), paired (k,), unsure (k,): nobody can tell without the history; g
-    (k, n) the jump operator on all nodes of the bodies, slave (n,) which of them are of the slave."""
+    (k, n) the jump operator on all nodes of the bodies, turn (k, n, 3) what normal displacements add along the surface (J5), slave
+    (n,) which nodes are of the slave."""
 
     def __init__(self, k, n):
         self.distance, self.normal, self.area = np.zeros(k), np.zeros((k, 3)), np.zeros(k)
         self.paired, self.unsure = np.zeros(k, bool), np.zeros(k, bool)
-        self.g, self.slave = np.zeros((k, n)), np.zeros(n, bool)
+        self.g, self.turn, self.slave = np.zeros((k, n)), np.zeros((k, n, 3)), np.zeros(n, bool)
         self.whole = self.area  # (k,) of the surface around a node, covered or not
         self.others = []  # the same with other rules
 
     def jump(self, field):
         """Of the sites (k, 3), of a field (n, 3) on the nodes; and how much other rules change it (k,)."""
-        jump = self.g @ field
-        return jump, max_of([np.linalg.norm(other.g @ field - jump, axis=1) for other in self.others], len(jump))
+        jump = self._jump(field)
+        return jump, max_of([np.linalg.norm(other._jump(field) - jump, axis=1) for other in self.others], len(jump))
+
+    def _jump(self, field):
+        return self.g @ field + np.einsum("kne,kn->ke", self.turn, self.normal @ field.T)
 
     def force(self, on_slave):
         """On all nodes (n, 3), of forces (k, 3) on the slave at its sites; and how much other rules change it (n,)."""
-        force = self.g.T @ on_slave
-        return force, max_of([np.linalg.norm(other.g.T @ on_slave - force, axis=1) for other in self.others], len(force))
+        force = self._force(on_slave)
+        return force, max_of([np.linalg.norm(other._force(on_slave) - force, axis=1) for other in self.others], len(force))
+
+    def _force(self, on_slave):
+        return self.g.T @ on_slave + np.einsum("kne,ke->kn", self.turn, on_slave).T @ self.normal
+
+    def drop(self, sites):
+        self.g[sites], self.turn[sites] = 0, 0
 
     def spread(self):
         """How much other rules change distances (k,) and areas (k,)."""
@@ -53,6 +63,7 @@ class Pair:
         self.slave = geometry.Surface(bodies, slave_faces, smoothed)
         self.master = geometry.Surface(bodies, master_faces, smoothed)
         self.kind = keys.get("Normal", "averaged")
+        self.friction = float(keys.get("Friction coefficient", 0)) > 0 or "tied" in keys.get("Contact law", "") or keys.get("Friction law") == "Tresca"
         self.nodes = self.slave.nodes
         box = bodies.x[self.master.nodes]
         self.reach = 0.25 * np.linalg.norm(np.ptp(box, axis=0))
@@ -202,7 +213,7 @@ class Pair:
         np.add.at(rows.g, (sites[:, :, None], self.master.faces[m][:, None]), -psi[:, :, None] * theirs[:, None])
         covered, rows.whole = rows.area / whole, whole
         rows.paired, rows.unsure = covered > 0.02, np.abs(covered - 0.02) < 0.001
-        rows.g[~rows.paired] = 0
+        rows.drop(~rows.paired)
         on = np.where(rows.paired)[0]
         rows.normal[:] = self.node_normal
         rows.normal[on] = normal[on] / np.linalg.norm(normal[on], axis=1)[:, None]
@@ -224,19 +235,24 @@ class Pair:
         return rows
 
     def _balance(self, rows, k):
-        """(J4): master weights that put the mean master point on the normal through the mean slave point."""
+        """(J4), (J5): master weights that put the mean master point on the normal through the mean slave point, and turns for what is
+        left along it."""
         x, n, g = self.bodies.x, rows.normal[k], rows.g[k]
         across = np.eye(3) - np.outer(n, n)
         masters = np.where((np.abs(g) > 1e-13) & ~rows.slave)[0]
         weight = np.abs(g[masters])
         v = across @ (g @ x)
         length = np.linalg.norm(v)
-        v *= min(1.0, 0.1 * np.sqrt(rows.area[k]) / max(length, 1e-300))
+        limit = 0.5 * np.sqrt(rows.whole[k])
+        v *= min(1.0, limit / max(length, 1e-300))
         y = (x[masters] - weight @ x[masters] / weight.sum()) @ across
         values, axes = np.linalg.eigh(np.einsum("e,ei,ej->ij", weight, y, y))
-        part = np.clip((values / (rows.area[k] * weight.sum()) - 1e-3) / 9e-3, 0, 1)
+        part = np.clip((values / rows.whole[k] - 1e-6) / 9e-6, 0, 1)
         factor = np.where(part > 0, part**2 * (3 - 2 * part) / np.where(part > 0, values, 1), 0)
-        g[masters] -= weight * (y @ (axes @ (factor * (axes.T @ v))))
+        slope = weight[:, None] * (y @ ((axes * factor) @ axes.T))
+        g[masters] -= slope @ v
+        if self.friction:
+            rows.turn[k, masters] = np.clip(n @ (g @ x), -limit, limit) * slope
 
 
 def choose(normals, preferred, sites, choices):

@@ -100,7 +100,7 @@ class State:
             pair.whole = pair.rows.whole
             # without partner there is no jump; where only the history tells, the file does
             for rows in [pair.rows] + pair.rows.others:
-                rows.g[~np.where(rows.unsure, v["paired"] > 0.5, rows.paired)] = 0
+                rows.drop(~np.where(rows.unsure, v["paired"] > 0.5, rows.paired))
         traction = v["friction_traction"] - v["CPRESS"][:, None] * v["normal"]
         pair.force = pair.area[:, None] * traction
         pair.scale = np.linalg.norm(pair.force, axis=1).sum()
