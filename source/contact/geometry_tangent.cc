@@ -105,11 +105,8 @@ namespace Nodus
     const Eigen::RowVectorXd gap = gap_variation(site, state, variation);
     for (const auto &[k, coefficient] : gap_rows_[site])
       couplings.add_gap(k, variation.columns(), coefficient * gap);
-    if (averages(site) && !averaged_.row(site).master.empty())
-      variation.balance(pairing_[site],
-                        tangent_derivatives(site),
-                        averaged_.row(site),
-                        geometry_.slave[surfaces_.pair(site)].positions());
+    if (jump_.middle(site) != jump_.end(site))
+      variation.balance(jump_, site, averages(site), pairing_[site], geometry_.slave[surfaces_.pair(site)].positions());
     couple(site, state, residual, law(site, state, residual, follows), variation, couplings);
   }
 
@@ -135,16 +132,16 @@ namespace Nodus
     Eigen::RowVectorXd gap  = eigen(n) * rows.middleRows<3>(variation.offset());
     for (unsigned int e = 0; e < variation.nodes().size(); ++e)
       gap += n * state.x[variation.nodes()[e]] * rows.row(e);
-    if (averages(site)) // the tangent at fixed geometry has the weights after the balance: last term of eq. G13
+    if (jump_.middle(site) != jump_.end(site)) // last term of eq. G13: at fixed geometry the weights are balanced ones
     {
-      const AveragedJump::Row &row = averaged_.row(site);
-      jump                         = row.offset - row.rigid.x;
-      for (const auto *const entries : {&row.slave, &row.master})
-        for (const AveragedJump::Entry &e : *entries)
-          jump += e.weight * state.x[e.node];
+      Vector3 beside;
       for (const JumpOperator::Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
-        gap.segment<3>(3 * variation.place_of_source(e->node)) +=
-            (variation.weights()[variation.place_of_node(e->node)] - e->weight) * eigen(n);
+      {
+        const double change = e->unbalanced - e->weight;
+        beside += change * (state.x[e->node] - state.x[jump_.begin(site)->node]);
+        gap.segment<3>(3 * variation.place_of_source(e->node)) += change * eigen(n);
+      }
+      jump += beside - (n * beside) * n;
     }
     gap += eigen(jump) * rows.middleRows<3>(variation.normal());
     return gap;
@@ -164,30 +161,31 @@ namespace Nodus
       slip += eigen(state.increment[variation.nodes()[e]]).transpose() * rows.row(e);
     const auto   normal = rows.middleRows<3>(variation.normal());
     const Matrix lever  = lever_variation(site, state, variation);
-    if (lever.size() > 0)
-      for (const JumpOperator::Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
-        slip += eigen(e->turn).transpose() *
-                (pairing_[site].normal * state.increment[e->node] * lever + eigen(state.increment[e->node]) * normal);
+    const auto   turn   = [&](const JumpOperator::Entry *const e) -> Matrix
+    { return variation.turns().middleRows<3>(3 * (e - jump_.middle(site))) + eigen(e->turn).transpose() * lever; };
+    for (const JumpOperator::Entry *e = jump_.middle(site); e != jump_.end(site) && lever.size() > 0; ++e)
+      slip += pairing_[site].normal * state.increment[e->node] * turn(e) +
+              eigen(e->turn).transpose() * (eigen(state.increment[e->node]) * normal);
 
     const Matrix turned =
         eigen(law.force_normal) * normal + eigen(law.force_slip) * slip + eigen(law.force_area).transpose() * area;
-    const Eigen::Vector3d force = eigen(residual.jump[site]).transpose();
-    const Eigen::Vector3d along = eigen(pairing_[site].normal).transpose();
-    std::vector<double>   weight(variation.nodes().size(), 0.);
-    std::vector<Vector3>  turn(variation.nodes().size());
+    const Eigen::Vector3d                    force = eigen(residual.jump[site]).transpose();
+    const Eigen::Vector3d                    along = eigen(pairing_[site].normal).transpose();
+    std::vector<const JumpOperator::Entry *> entry(variation.nodes().size(), nullptr);
     for (const JumpOperator::Entry *e = jump_.begin(site); e != jump_.end(site); ++e)
-    {
-      weight[variation.place_of_node(e->node)] = e->weight;
-      turn[variation.place_of_node(e->node)]   = e->turn;
-    }
+      entry[variation.place_of_node(e->node)] = e;
     Matrix block(dim, rows.cols());
-    for (unsigned int e = 0; e < variation.nodes().size(); ++e)
+    for (unsigned int i = 0; i < variation.nodes().size(); ++i)
     {
-      block = force * rows.row(e) + weight[e] * turned;
-      if (turn[e] != Vector3())
-        block += along * (eigen(turn[e]) * turned + turn[e] * residual.jump[site] * lever) +
-                 turn[e] * residual.jump[site] * normal;
-      couplings.add_force(variation.nodes()[e], variation.columns(), block);
+      block = force * rows.row(i);
+      if (const JumpOperator::Entry *const e = entry[i])
+      {
+        block += e->weight * turned;
+        if (lever.size() > 0 && e >= jump_.middle(site))
+          block += along * (eigen(e->turn) * turned + force.transpose() * turn(e)) +
+                   (e->turn * residual.jump[site]) * normal;
+      }
+      couplings.add_force(variation.nodes()[i], variation.columns(), block);
     }
     if (weight_[site] > 0. && status_.friction(site))
     {

@@ -19,6 +19,16 @@ namespace Nodus
     return {value, (growth - value) / spread};
   }
 
+  std::array<Vector3, 2> MomentBalance::basis(const SitePairing &site)
+  {
+    // where components are held the tangents lie across the free part of the normal alone
+    Vector3 first = site.tangent[0] - (site.tangent[0] * site.normal) * site.normal;
+    if (first.norm() < 1e-3)
+      first = site.tangent[1] - (site.tangent[1] * site.normal) * site.normal;
+    first /= first.norm();
+    return {{first, dealii::cross_product_3d(site.normal, first)}};
+  }
+
   namespace
   {
     using namespace MomentBalance;
@@ -34,6 +44,7 @@ namespace Nodus
       std::vector<Entry>     slave = {}, master = {};
       RigidPart              rigid  = {};
       Vector3                offset = {}; ///< jump of the positions minus that of the nodal ones
+      double                 size   = 0.; ///< of the surface [length]
       double                 lever  = 0.;
 
       void clear()
@@ -42,7 +53,7 @@ namespace Nodus
         master.clear();
         rigid  = RigidPart();
         offset = Vector3();
-        lever  = 0.;
+        lever = size = 0.;
       }
       Point mean_slave_point(const std::vector<Point> &x) const
       {
@@ -53,95 +64,100 @@ namespace Nodus
       }
       /// Adds @p weight times a node to @p side, #slave or #master. A hanging node is where those are that it follows,
       /// but for its reference position.
-      void add(std::vector<Entry> &side, const unsigned int node, const double weight)
+      void add(std::vector<Entry> &side, const unsigned int node, const double weight, const double share = 0.)
       {
-        const auto add_free = [&side](const unsigned int free_node, const double part)
+        const auto add_free = [&](const unsigned int free_node, const double part)
         {
           const auto at =
               std::find_if(side.begin(), side.end(), [free_node](const Entry &e) { return e.node == free_node; });
           if (at == side.end())
-            side.push_back({free_node, part, {}});
+            side.push_back({free_node, part * weight, {}, 0., part * share});
           else
-            at->weight += part;
+          {
+            at->weight += part * weight;
+            at->share += part * share;
+          }
         };
-        surfaces.expand(node, weight, add_free);
+        surfaces.expand(node, 1., add_free);
         offset += weight * surfaces.nodes()[node].offset;
       }
-      void add(std::vector<Entry> &side, const SurfaceFace &face, const FaceShape &shape, const double sign)
+      /// Adds nodes that share evenly in what balances moments.
+      template <typename Nodes, typename Weights>
+      void add_master(const Nodes &nodes, const Weights &weights)
       {
-        for (unsigned int n = 0; n < shape.n; ++n)
-          if (std::abs(shape.value[n]) > 1e-15)
-            add(side, face.nodes[n], sign * shape.value[n]);
+        for (unsigned int n = 0; n < nodes.size(); ++n)
+          add(master, nodes[n], -weights[n], 1. / nodes.size());
       }
     };
 
     /// Balances moments. Averaged gaps vanish in the mean alone: gaps that are left between the points, on masters that
     /// are not flat, put the mean master point beside the normal through the slave node, and forces along that would
-    /// turn the bodies. The master weights are changed by the least amount, relative to themselves, that puts it on the
-    /// normal (eq. J4); the distance along it stays. As changes are relative, a node whose weight grows from zero comes
-    /// in without a jump. Friction acts with that distance as its lever: its moment is taken up by forces along the
-    /// normal, and what the master turns counts as slip at the slave (eq. J5).
+    /// turn the bodies; so do smoothed facets and overhang in the other schemes. The master weights are changed by the
+    /// least amount, relative to the shares of the nodes, that puts it on the normal (eq. J4); the distance along it
+    /// stays. Shares of averages are their weights: a node whose weight grows from zero comes in without a jump.
+    /// Friction acts with that distance as its lever: its moment is taken up by forces along the normal, and what the
+    /// master turns counts as slip at the slave (eq. J5).
     void balance_moment(
-        const SitePairing &site, const double size, const bool friction, const std::vector<Point> &x, Row &row)
+        const SitePairing &site, const double adjustment, const bool friction, const std::vector<Point> &x, Row &row)
     {
       Vector3 apart, mean;
       double  sum = 0.;
-      for (const auto *const side : {&row.slave, &row.master})
-        for (const Entry &e : *side)
+      for (auto *const side : {&row.slave, &row.master})
+        for (Entry &e : *side)
+        {
+          e.unbalanced = e.weight;
           apart += e.weight * x[e.node];
+        }
       for (const Entry &e : row.master)
       {
-        mean += std::abs(e.weight) * x[e.node];
-        sum += std::abs(e.weight);
+        mean += e.share * x[e.node];
+        sum += e.share;
       }
       mean /= sum;
-      const auto components = [&](const Vector3 &v)
-      { return Eigen::Vector2d(v * site.tangent[0], v * site.tangent[1]); };
-      Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+      const auto      b          = basis(site);
+      const auto      components = [&](const Vector3 &v) { return Eigen::Vector2d(v * b[0], v * b[1]); };
+      Eigen::Matrix2d spread     = Eigen::Matrix2d::Zero();
       for (const Entry &e : row.master)
       {
         const Eigen::Vector2d y = components(x[e.node] - mean);
-        spread += std::abs(e.weight) * y * y.transpose();
+        spread += e.share * y * y.transpose();
       }
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
       Eigen::Vector2d                                      value;
       for (unsigned int i = 0; i < 2; ++i)
-        value[i] = inverse_of_spread(axes.eigenvalues()[i], size).first;
+        value[i] = inverse_of_spread(axes.eigenvalues()[i], row.size).first;
       const Eigen::Matrix2d inverse = axes.eigenvectors() * value.asDiagonal() * axes.eigenvectors().transpose();
-      const double          limit   = largest_shift * size;
+      const double          limit   = largest_shift * row.size;
       Eigen::Vector2d       beside  = components(apart);
       beside *= std::min(1., limit / std::max(beside.norm(), std::numeric_limits<double>::min()));
-      double lever = apart * site.normal;
+      double lever = apart * site.normal - adjustment;
       for (Entry &e : row.master)
       {
         const Vector3         arm    = x[e.node] - mean;
-        const Eigen::Vector2d slope  = std::abs(e.weight) * inverse * components(arm);
+        const Eigen::Vector2d slope  = e.share * inverse * components(arm);
         const double          change = -slope.dot(beside), along = change * (arm * site.normal);
         e.weight += change;
-        e.turn = slope[0] * site.tangent[0] + slope[1] * site.tangent[1];
+        for (unsigned int i = 0; i < 2; ++i)
+          if (site.tangent_free[i]) // there is no friction along the other one
+            e.turn += slope[i] * b[i];
         row.offset -= along * site.normal;
         lever += along;
       }
-      if (friction && std::abs(lever) > smallest_lever * size)
+      if (friction && std::abs(lever) > smallest_lever * row.size)
         row.lever = std::clamp(lever, -limit, limit);
       for (Entry &e : row.master)
         e.turn *= row.lever;
     }
 
     /// Of a slave node with averages over its faces.
-    void make_averaged(const AveragedJump::Row  &averages,
-                       const SitePairing        &site,
-                       const bool                friction,
-                       const std::vector<Point> &x,
-                       Row                      &row)
+    void make_averaged(const AveragedJump::Row &averages, Row &row)
     {
       for (const AveragedJump::Entry &e : averages.slave)
-        row.slave.push_back({e.node, e.weight, {}});
+        row.slave.push_back({e.node, e.weight, {}, 0., 0.});
       for (const AveragedJump::Entry &e : averages.master)
-        row.master.push_back({e.node, e.weight, {}});
+        row.master.push_back({e.node, e.weight, {}, 0., std::abs(e.weight)});
       row.offset = averages.offset - averages.rigid.x;
-      if (!row.master.empty())
-        balance_moment(site, std::sqrt(averages.whole), friction, x, row);
+      row.size   = std::sqrt(averages.whole);
     }
 
     /// Of a slave node or an integration point against the point that it is projected on.
@@ -151,6 +167,7 @@ namespace Nodus
       const unsigned int        p        = surfaces.pair(s);
       const RigidSurface *const rigid    = geometry.rigid[p];
       Point                     on_rigid;
+      row.size = surfaces.face_size(p);
       if (rigid != nullptr)
       {
         on_rigid   = rigid->closest(geometry.position(surfaces, s)).x;
@@ -162,22 +179,18 @@ namespace Nodus
       {
         const SlavePoint &point = surfaces.point(s);
         const FaceShape   shape(surfaces.degree(), point.xi, point.eta);
-        row.add(row.slave, geometry.slave[p].face(point.face), shape, 1.);
+        for (unsigned int n = 0; n < shape.n; ++n)
+          if (std::abs(shape.value[n]) > 1e-15)
+            row.add(row.slave, geometry.slave[p].face(point.face).nodes[n], shape.value[n]);
         row.offset += geometry.slave[p].offset(point.face, point.xi, point.eta);
       }
       else
-        row.slave.push_back({surfaces.slave_nodes()[s].node, 1., {}});
+        row.slave.push_back({surfaces.slave_nodes()[s].node, 1., {}, 0., 0.});
       if (rigid != nullptr && rigid->carrier() != nullptr)
-      {
-        const RigidCarrier::Weights weights = rigid->carrier()->weights(on_rigid);
-        for (unsigned int i = 0; i < weights.size(); ++i)
-          row.add(row.master, rigid->carrier()->nodes()[i], -weights[i]);
-      }
+        row.add_master(rigid->carrier()->nodes(), rigid->carrier()->weights(on_rigid));
       if (master.found())
-      {
-        const FaceShape shape(surfaces.degree(), master.xi, master.eta);
-        row.add(row.master, geometry.master[p].face(master.face), shape, -1.);
-      }
+        row.add_master(geometry.master[p].face(master.face).nodes,
+                       FaceShape(surfaces.degree(), master.xi, master.eta).value);
     }
   } // namespace
 
@@ -196,6 +209,7 @@ namespace Nodus
     stuck_.clear();
     normal_.clear();
     lever_.clear();
+    size_.clear();
     Row row{surfaces};
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
     {
@@ -203,9 +217,11 @@ namespace Nodus
       const bool         paired = pairing[s].found || pairing[s].held;
       row.clear();
       if (paired && pairs[p].scheme == ContactPairParameters::Scheme::averaged)
-        make_averaged(averaged.row(s), pairing[s], status.has_friction(p), geometry.slave[p].positions(), row);
+        make_averaged(averaged.row(s), row);
       else if (paired && (pairing[s].master.found() || geometry.rigid[p] != nullptr))
         make_pointwise(s, geometry, pairing[s].master, row);
+      if (!row.master.empty())
+        balance_moment(pairing[s], status.adjustment(s), status.has_friction(p), geometry.slave[p].positions(), row);
       if (const RigidSurface *const rigid = geometry.rigid[p]; rigid != nullptr && !row.slave.empty())
         row.rigid = rigid->part(row.mean_slave_point(geometry.slave[p].positions()));
       entries_.insert(entries_.end(), row.slave.begin(), row.slave.end());
@@ -215,6 +231,7 @@ namespace Nodus
       offset_.push_back(row.offset);
       normal_.push_back(pairing[s].normal);
       lever_.push_back(row.lever);
+      size_.push_back(row.size);
       rigid_.push_back(row.rigid);
     }
   }

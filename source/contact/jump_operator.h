@@ -6,21 +6,24 @@
 #include "contact/status.h"
 #include "contact/surface.h"
 
+#include <array>
 #include <utility>
 #include <vector>
 
 namespace Nodus
 {
-  /// Bounds on the changes of averaged rows that keep forces from turning the bodies.
+  /// Bounds on the changes of rows that keep forces from turning the bodies.
   namespace MomentBalance
   {
-    /// Largest shift of a mean master point, in sizes of the surface around its slave node: of sites far from contact.
+    /// Largest shift of a master point, in sizes of the surface: of sites far from contact.
     constexpr double largest_shift = 0.5;
-    /// Mean square distance of the master nodes, over the surface around the slave node, at which their mean is not
-    /// moved, as they are in a line, and from which on it is in full.
+    /// Mean square distance of the master nodes, over the square of that size, at which their point is not moved, as
+    /// they are in a line, and from which on it is in full.
     constexpr double no_spread = 1e-6, full_spread = 1e-5;
     /// 1 / @p spread [1/area], or less where that is little, and its derivative. @p size: of the surface [length].
     std::pair<double, double> inverse_of_spread(double spread, double size);
+    /// Unit vectors across the normal of a site and each other. The first tangents that carry friction are these.
+    std::array<Vector3, 2> basis(const SitePairing &site);
   } // namespace MomentBalance
 
   /// G: the jump of each contact site as a combination of nodal values, slave minus master (eq. 18, 22).
@@ -37,6 +40,8 @@ namespace Nodus
       unsigned int node; ///< index into ContactSurfaces::nodes()
       double       weight;
       Vector3      turn; ///< along the surface: what its turns add to the slip of points that are apart (eq. J5)
+      /// The weight before moments are balanced and, of a master node, its part in what balances them (eq. J4).
+      double unbalanced = 0., share = 0.;
 
       Vector3 jump(const Vector3 &normal, const Vector3 &u) const
       {
@@ -90,11 +95,16 @@ namespace Nodus
     {
       return normal_[site];
     }
-    /// How far the nodes of the slave are beyond those of the master along the normal, in pairs with friction: at closed
-    /// sites what smoothed surfaces are off their facets, and overlaps that count as none [length].
+    /// How far the nodes of the slave are beyond those of the master along the normal, in pairs with friction, but for
+    /// what counts as no overlap or gap: at closed sites what smoothed surfaces are off their facets [length].
     double lever(const unsigned int site) const
     {
       return lever_[site];
+    }
+    /// What bounds on the balance of moments refer to [length].
+    double size(const unsigned int site) const
+    {
+      return size_[site];
     }
     /// Jump of the displacement of the increment (eq. K2): with the way of a rigid master and, on a new mesh, what
     /// set_stuck() adds.
@@ -126,7 +136,7 @@ namespace Nodus
     std::vector<Entry>        entries_;
     std::vector<unsigned int> start_, middle_;
     std::vector<Vector3>      offset_, normal_;
-    std::vector<double>       lever_;
+    std::vector<double>       lever_, size_;
     std::vector<RigidPart>    rigid_;
     std::vector<Vector3>      stuck_; ///< empty, or per site
   };

@@ -14,13 +14,6 @@ namespace Nodus
     {
       return {v[0], v[1], v[2]};
     }
-    Eigen::Matrix3d eigen(const dealii::Tensor<2, dim> &m)
-    {
-      Eigen::Matrix3d result;
-      for (unsigned int i = 0; i < dim; ++i)
-        result.row(i) = eigen(m[i]);
-      return result;
-    }
   } // namespace
 
   SiteVariation::SiteVariation(const unsigned int n_surface_nodes, const unsigned int n_sources)
@@ -127,35 +120,38 @@ namespace Nodus
   {
     struct Entry
     {
-      unsigned int    node; ///< of the row
-      double          size, sign;
-      Vector3         arm; ///< from the mean
+      unsigned int    node;       ///< of the row
+      double          size, sign; ///< the share, and how it follows the weight
+      Vector3         arm;        ///< from the mean
       Eigen::Vector2d d;
     };
-    Moments(const SiteVariation      &site,
-            const SitePairing        &pairing,
-            const AveragedJump::Row  &row,
+    Moments(const SiteVariation      &variation,
+            const JumpOperator       &jump,
+            const unsigned int        site,
+            const bool                averaged,
+            const Basis              &b,
             const std::vector<Point> &x)
     {
       Vector3 mean;
-      for (const auto *const entries : {&row.slave, &row.master})
-        for (const AveragedJump::Entry &e : *entries)
-          beside += e.weight * x[e.node];
-      for (const AveragedJump::Entry &e : row.master)
+      for (const JumpOperator::Entry *e = jump.begin(site); e != jump.end(site); ++e)
+        beside += e->unbalanced * x[e->node];
+      for (const JumpOperator::Entry *e = jump.middle(site); e != jump.end(site); ++e)
       {
-        entries.push_back({site.place_of_node_[e.node],
-                           std::abs(e.weight),
-                           e.weight > 0. ? 1. : -1.,
-                           Vector3(x[e.node]),
+        entries.push_back({variation.place_of_node_[e->node],
+                           e->share,
+                           !averaged            ? 0.
+                           : e->unbalanced > 0. ? 1.
+                                                : -1.,
+                           Vector3(x[e->node]),
                            Eigen::Vector2d::Zero()});
-        mean += std::abs(e.weight) * x[e.node];
-        sum += std::abs(e.weight);
+        mean += e->share * x[e->node];
+        sum += e->share;
       }
       mean /= sum;
       for (Entry &e : entries)
       {
         e.arm -= mean;
-        e.d = Eigen::Vector2d(e.arm * pairing.tangent[0], e.arm * pairing.tangent[1]);
+        e.d = Eigen::Vector2d(e.arm * b[0], e.arm * b[1]);
         spread += e.size * e.d * e.d.transpose();
       }
     }
@@ -189,9 +185,18 @@ namespace Nodus
         shift     = limit / length * beside;
         to_beside = limit / length * (Eigen::Matrix2d::Identity() - beside * beside.transpose() / (length * length));
       }
-      slope = axes * value.asDiagonal() * axes.transpose() * shift;
+      inverse = axes * value.asDiagonal() * axes.transpose();
+      slope   = inverse * shift;
     }
-    Eigen::Matrix2d axes, divided, to_beside;
+    /// Derivative of H with respect to an entry of the spread (00, 11, 01), times @p y.
+    Eigen::Vector2d by_spread(const unsigned int k, const Eigen::Vector2d &y) const
+    {
+      Eigen::Matrix2d unit = Eigen::Matrix2d::Zero();
+      unit(k == 1, k != 0) = 1.;
+      unit(k != 0, k == 1) = 1.;
+      return axes * divided.cwiseProduct(axes.transpose() * unit * axes) * (axes.transpose() * y);
+    }
+    Eigen::Matrix2d axes, divided, to_beside, inverse;
     Eigen::Vector2d value, shift, slope;
   };
 
@@ -207,8 +212,8 @@ namespace Nodus
     };
   } // namespace
 
-  void SiteVariation::vary_moments(const SitePairing        &site,
-                                   const Eigen::Matrix3d    *d_t,
+  void SiteVariation::vary_moments(const Basis              &b,
+                                   const Eigen::Matrix3d    *d_b,
                                    const Moments            &moments,
                                    const std::vector<Point> &x)
   {
@@ -216,14 +221,14 @@ namespace Nodus
     slopes_.setZero(n_rows, rows_.cols());
     for (unsigned int i = 0; i < 2; ++i)
     {
-      const Eigen::RowVector3d t = eigen(site.tangent[i]);
+      const Eigen::RowVector3d t = eigen(b[i]);
       for (unsigned int e = 0; e < nodes_.size(); ++e)
       {
-        slopes_.row(to_beside + i) += site.tangent[i] * x[nodes_[e]] * rows_.row(e);
+        slopes_.row(to_beside + i) += b[i] * x[nodes_[e]] * rows_.row(e);
         if (weight_[e] != 0.)
           slopes_.block<1, 3>(to_beside + i, 3 * place_of_source_[nodes_[e]]) += weight_[e] * t;
       }
-      slopes_.row(to_beside + i) += eigen(moments.beside) * d_t[i] * normals;
+      slopes_.row(to_beside + i) += eigen(moments.beside) * d_b[i] * normals;
     }
     Eigen::RowVector3d turned[3] = {Eigen::RowVector3d::Zero(), Eigen::RowVector3d::Zero(), Eigen::RowVector3d::Zero()};
     for (const Moments::Entry &e : moments.entries)
@@ -234,51 +239,81 @@ namespace Nodus
       {
         const unsigned int i = k == 1 ? 1 : 0, j = k == 0 ? 0 : 1;
         slopes_.row(to_spread + k) += e.sign * e.d[i] * e.d[j] * row_e;
-        slopes_.block<1, 3>(to_spread + k, column) +=
-            e.size * (e.d[i] * eigen(site.tangent[j]) + e.d[j] * eigen(site.tangent[i]));
-        turned[k] += e.size * eigen(e.arm) * (e.d[i] * d_t[j] + e.d[j] * d_t[i]);
+        slopes_.block<1, 3>(to_spread + k, column) += e.size * (e.d[i] * eigen(b[j]) + e.d[j] * eigen(b[i]));
+        turned[k] += e.size * eigen(e.arm) * (e.d[i] * d_b[j] + e.d[j] * d_b[i]);
       }
       for (unsigned int i = 0; i < 2; ++i)
       {
         slopes_.row(to_mean + i) += e.sign * e.d[i] / moments.sum * row_e;
-        slopes_.block<1, 3>(to_mean + i, column) += e.size / moments.sum * eigen(site.tangent[i]);
+        slopes_.block<1, 3>(to_mean + i, column) += e.size / moments.sum * eigen(b[i]);
       }
     }
     for (unsigned int k = 0; k < 3; ++k)
       slopes_.row(to_spread + k) += turned[k] * normals;
   }
 
-  void SiteVariation::balance(const SitePairing            &site,
-                              const std::array<Matrix3, 2> &turn,
-                              const AveragedJump::Row      &row,
-                              const std::vector<Point>     &x)
+  void SiteVariation::vary_turns(const SitePairing     &site,
+                                 const Basis           &b,
+                                 const double           lever,
+                                 const Eigen::Matrix3d *d_b,
+                                 const Moments         &moments,
+                                 const Slope           &slope)
   {
-    const Moments         moments(*this, site, row, x);
-    const Eigen::Vector2d beside(moments.beside * site.tangent[0], moments.beside * site.tangent[1]);
-    const Slope           slope(moments.spread, std::sqrt(row.whole), beside);
-    const Eigen::Matrix3d d_t[2]  = {eigen(turn[0]), eigen(turn[1])};
+    const auto normals = rows_.middleRows<3>(normal());
+    turns_.setZero(3 * moments.entries.size(), rows_.cols());
+    for (unsigned int m = 0; m < moments.entries.size(); ++m)
+    {
+      const Moments::Entry &e    = moments.entries[m];
+      auto                  turn = turns_.middleRows<3>(3 * m);
+      const Eigen::Vector2d h    = slope.inverse * e.d;
+      for (unsigned int i = 0; i < 2; ++i)
+      {
+        if (!site.tangent_free[i])
+          continue;
+        const auto row = slope.inverse.row(i);
+        Matrix     d_h =
+            eigen(e.arm) * (row[0] * d_b[0] + row[1] * d_b[1]) * normals - row * slopes_.middleRows<2>(to_mean);
+        for (unsigned int k = 0; k < 3; ++k)
+          d_h += slope.by_spread(k, e.d)[i] * slopes_.row(to_spread + k);
+        d_h.middleCols<3>(3 * place_of_source_[nodes_[e.node]]) += row[0] * eigen(b[0]) + row[1] * eigen(b[1]);
+        turn += eigen(b[i]).transpose() * (lever * (e.sign * h[i] * rows_.row(e.node) + e.size * d_h));
+        turn += lever * e.size * h[i] * d_b[i] * normals;
+      }
+    }
+  }
+
+  void SiteVariation::balance(const JumpOperator       &jump,
+                              const unsigned int        number,
+                              const bool                averaged,
+                              const SitePairing        &site,
+                              const std::vector<Point> &x)
+  {
+    for (const JumpOperator::Entry *e = jump.begin(number); e != jump.end(number); ++e)
+      weight_[place_of_node_[e->node]] = e->unbalanced;
+    const Basis           b = MomentBalance::basis(site);
+    const Moments         moments(*this, jump, number, averaged, b, x);
+    const Eigen::Vector2d beside(moments.beside * b[0], moments.beside * b[1]);
+    const Slope           slope(moments.spread, jump.size(number), beside);
+    // of the basis with respect to the normal; a turn about that changes nothing
+    const Eigen::Matrix3d d_b[2]  = {-eigen(site.normal).transpose() * eigen(b[0]),
+                                     -eigen(site.normal).transpose() * eigen(b[1])};
     const auto            normals = rows_.middleRows<3>(normal());
 
-    vary_moments(site, d_t, moments, x);
+    vary_moments(b, d_b, moments, x);
+
+    if (jump.lever(number) != 0.)
+      vary_turns(site, b, jump.lever(number), d_b, moments, slope);
 
     // of the slope
-    const Eigen::Matrix2d            H        = slope.axes * slope.value.asDiagonal() * slope.axes.transpose();
-    const Eigen::Vector2d            s        = slope.axes.transpose() * slope.shift;
     Eigen::Matrix<double, 2, n_rows> to_slope = Eigen::Matrix<double, 2, n_rows>::Zero();
-    to_slope.middleCols<2>(to_beside)         = H * slope.to_beside;
+    to_slope.middleCols<2>(to_beside)         = slope.inverse * slope.to_beside;
     for (unsigned int k = 0; k < 3; ++k)
-    {
-      Eigen::Matrix2d unit = Eigen::Matrix2d::Zero();
-      unit(k == 1, k != 0) = 1.;
-      unit(k != 0, k == 1) = 1.;
-      to_slope.col(to_spread + k) =
-          slope.axes * slope.divided.cwiseProduct(slope.axes.transpose() * unit * slope.axes) * s;
-    }
+      to_slope.col(to_spread + k) = slope.by_spread(k, slope.shift);
     const Matrix d_slope = to_slope * slopes_;
 
     const Eigen::RowVectorXd with_mean = slope.slope.transpose() * slopes_.middleRows<2>(to_mean);
-    const Eigen::RowVector3d along = slope.slope[0] * eigen(site.tangent[0]) + slope.slope[1] * eigen(site.tangent[1]);
-    const Eigen::Matrix3d    d_along = slope.slope[0] * d_t[0] + slope.slope[1] * d_t[1];
+    const Eigen::RowVector3d along     = slope.slope[0] * eigen(b[0]) + slope.slope[1] * eigen(b[1]);
+    const Eigen::Matrix3d    d_along   = slope.slope[0] * d_b[0] + slope.slope[1] * d_b[1];
     for (const Moments::Entry &e : moments.entries)
     {
       auto row_e = rows_.row(e.node);

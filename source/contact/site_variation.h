@@ -84,31 +84,36 @@ namespace Nodus
     void add_face(const ContactSurfaces &surfaces, const FaceVariation &face, unsigned int a);
     /// ... which become means: the variation of @p row from the variation of what it was before the division.
     void take_means(const AveragedJump::Row &row);
-    /// Weights of the nodes before the change that balances moments.
-    const std::vector<double> &weights() const
+    /// Replaces the variation of the weights by that after the change that balances moments (eq. G28-G30). @p averaged:
+    /// shares follow the weights.
+    void balance(const JumpOperator       &jump,
+                 unsigned int              site,
+                 bool                      averaged,
+                 const SitePairing        &frame,
+                 const std::vector<Point> &x);
+    /// After balance(): how the turns of the master nodes of a site with a lever vary at a fixed lever (eq. G34), three
+    /// rows each.
+    const Matrix &turns() const
     {
-      return weight_;
+      return turns_;
     }
 
-    /// Replaces the variation of the weights by that after the change that balances moments (eq. G28-G30). @p turn:
-    /// derivatives of the tangents with respect to the normal.
-    void balance(const SitePairing            &site,
-                 const std::array<Matrix3, 2> &turn,
-                 const AveragedJump::Row      &row,
-                 const std::vector<Point>     &x);
-
   private:
+    using Basis = std::array<Vector3, 2>;
     struct Moments;
     struct Slope;
-    /// Fills slopes_ with the variations of the moments; @p d_t: of the tangents with respect to the normal.
-    void vary_moments(const SitePairing        &site,
-                      const Eigen::Matrix3d    *d_t,
-                      const Moments            &moments,
-                      const std::vector<Point> &x);
+    void vary_turns(const SitePairing     &site,
+                    const Basis           &b,
+                    double                 lever,
+                    const Eigen::Matrix3d *d_b,
+                    const Moments         &moments,
+                    const Slope           &slope);
+    /// Fills slopes_ with the variations of the moments; @p d_b: of the basis with respect to the normal.
+    void vary_moments(const Basis &b, const Eigen::Matrix3d *d_b, const Moments &moments, const std::vector<Point> &x);
 
     std::vector<unsigned int> nodes_, columns_, place_of_node_, place_of_source_;
-    Matrix                    rows_, slopes_; ///< slopes_: scratch
-    std::vector<double>       weight_;
+    Matrix                    rows_, turns_, slopes_; ///< slopes_: scratch
+    std::vector<double>       weight_;                ///< before the change that balances moments
   };
 } // namespace Nodus
 

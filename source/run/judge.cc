@@ -21,7 +21,7 @@ namespace Nodus
     /// ... and by this: what pairing from another state finds is the same up to round-off alone.
     constexpr double round_off = 1e-6;
     /// The resultant of a body and that of a pair, relative; the moment of a pair in forces times mean faces.
-    constexpr double body_tolerance = 1e-6, pair_force_tolerance = 1e-9, pair_moment_tolerance = 0.1;
+    constexpr double body_tolerance = 1e-6, pair_force_tolerance = 1e-9, pair_moment_tolerance = 1e-8;
     /// Of contradicted statuses, of the largest pressure or of the cone.
     constexpr double status_tolerance = 1e-3;
     /// Of the mean face of the side with the smaller ones; and in a pair without a closed site, where facets of curved
@@ -205,22 +205,32 @@ namespace Nodus
   void Judge::measure_pairs(Verdict &verdict) const
   {
     const ContactSurfaces &surfaces = contact_->surfaces();
-    std::vector<double>    sums(surfaces.n_pairs(), 0.);
+    std::vector<double>    sums(4 * surfaces.n_pairs(), 0.); // of forces, and the moment of surfaces that are adjusted
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
       if (surfaces.is_owned(s))
-        sums[surfaces.pair(s)] += contact_->residual().jump[s].norm();
+      {
+        const Vector3 &force = contact_->residual().jump[s];
+        const Vector3  moment =
+            contact_->status().adjustment(s) * dealii::cross_product_3d(contact_->pairing()[s].normal, force);
+        double *const sum = sums.data() + 4 * surfaces.pair(s);
+        sum[0] += force.norm();
+        for (unsigned int c = 0; c < dim; ++c)
+          sum[1 + c] += moment[c];
+      }
     dealii::Utilities::MPI::sum(sums, model_.communicator, sums);
     const std::vector<ContactResultants> resultants = contact_->resultants();
 
     Verdict::Finding &forces = verdict[Measure::pair_forces], &moments = verdict[Measure::pair_moments];
     forces.tolerance  = pair_force_tolerance;
     moments.tolerance = pair_moment_tolerance;
-    for (unsigned int p = 0; p < sums.size(); ++p)
-      if (const ContactResultants &r = resultants[p]; sums[p] > 0.)
+    for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
+      if (const double *const sum = sums.data() + 4 * p; sum[0] > 0.)
       {
-        const std::string where = pair_label(model_.parameters.contact_pairs, p);
-        forces.raise((r.slave_force + r.master_force).norm() / sums[p], where);
-        moments.raise((r.slave_moment + r.master_moment).norm() / (sums[p] * larger_face_[p]), where);
+        const ContactResultants &r     = resultants[p];
+        const std::string        where = pair_label(model_.parameters.contact_pairs, p);
+        const Vector3            adjusted({sum[1], sum[2], sum[3]});
+        forces.raise((r.slave_force + r.master_force).norm() / sum[0], where);
+        moments.raise((r.slave_moment + r.master_moment + adjusted).norm() / (sum[0] * larger_face_[p]), where);
       }
   }
 

@@ -19,7 +19,7 @@ namespace
     for (unsigned int s = 0; s < fixture.surfaces->n_sites(); ++s)
       for (auto e = fixture.jump.begin(s); e != fixture.jump.end(s); ++e)
         for (unsigned int c = 0; c < 3; ++c)
-          R[fixture.surfaces->nodes()[e->node].dofs[c]] += e->weight * r.jump[s][c];
+          R[fixture.surfaces->nodes()[e->node].dofs[c]] += fixture.jump.force(s, *e, r.jump[s])[c];
     for (unsigned int k = 0; k < layout.n_slave_nodes; ++k)
     {
       R[layout.lambda(k)] = r.lambda[k];

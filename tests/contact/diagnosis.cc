@@ -42,6 +42,13 @@ namespace
     const std::string text = contents("diagnosis.md");
     if (!message.empty() && message.find("diagnosis.md") == std::string::npos)
       return "the message does not name the page: " + message;
+    const std::string first = "1. **";
+    const auto        begin = text.find(first);
+    if (begin != std::string::npos)
+      if (const std::string cause =
+              text.substr(begin + first.size(), text.find("**", begin + 5) - begin - first.size());
+          message.find(cause) == std::string::npos)
+        return "the message does not repeat the first cause, " + cause + ": " + message;
     return message.empty() && text.empty() ? "" : text;
   }
 
@@ -215,6 +222,30 @@ int main(int argc, char **argv)
           "has the same bodies with slave and master exchanged",
           "/Slave where`",
           "/Slave body=1\" --set \"Contact pair 1/Slave boundary ids=5\""});
+
+  auto strip                = p; // it buckles between two walls, and may not be relaxed
+  strip.bodies              = {box("strip", "20,2,1", {0, -0.25, 0}, {20, 0.25, 0.5}, 1000, 0.3)};
+  strip.boundary_conditions = {hold("clamp", region(1, {x_minus}), {0, 1, 2}),
+                               condition("push", Type::displacement, region(1, {x_plus}), {0, 1}, {"-1.6*t", "0"}),
+                               hold("plane strain", region(1, {z_minus, z_plus}), {2}),
+                               condition("imperfection", Type::traction, region(1, {y_plus}), {1}, {"-0.05"})};
+  strip.contact_pairs.assign(2, p.contact_pairs[0]);
+  for (const bool upper : {false, true})
+  {
+    auto &wall                = strip.contact_pairs[upper];
+    wall.name                 = upper ? "upper wall" : "lower wall";
+    wall.slave                = region(1, {upper ? y_plus : y_minus});
+    wall.master               = {};
+    wall.master_surface.shape = MasterSurfaceParameters::Shape::plane;
+    wall.master_surface.point = Point(0., upper ? 1.25 : -1.25, 0.);
+    wall.master_surface.axis  = Vector3({0., upper ? -1. : 1., 0.});
+  }
+  strip.strategy.without         = {"relaxation"};
+  strip.load_stepping.increments = {16};
+  expect("a strip that buckles",
+         page(strip),
+         "the bodies are not stable: they buckle, snap through or soften",
+         {"negative eigenvalues", "softest_motion"});
 
   auto driven                          = p; // both surfaces of the contact are moved, along each other
   driven.boundary_conditions[0].region = region(1, {z_plus});

@@ -129,7 +129,7 @@ namespace
       for (unsigned int s = 0; s < fixture_.surfaces->n_sites(); ++s)
         for (auto e = fixture_.jump.begin(s); e != fixture_.jump.end(s); ++e)
           for (unsigned int c = 0; c < 3; ++c)
-            R[fixture_.surfaces->nodes()[e->node].dofs[c]] += e->weight * r.jump[s][c];
+            R[fixture_.surfaces->nodes()[e->node].dofs[c]] += fixture_.jump.force(s, *e, r.jump[s])[c];
       for (unsigned int k = 0; k < layout.n_slave_nodes; ++k)
       {
         R[layout.lambda(k)] = r.lambda[k] / factor(k, true);

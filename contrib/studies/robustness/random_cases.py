@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Random contact cases: do they finish, do those that stop say why, and is what they report true?
 
-    random_cases.py [--seed N] [--cases N] [--only N] [--jobs N] [--time-limit S]
+    random_cases.py [--seed N] [--cases N] [--only N] [--jobs N] [--time-limit S] [--advice]
 
 Writes case_<n>.prm for each, runs it, checks the results with checks.py and prints the table of README.md; details go to
-random_cases.json in the scratch folder (NODUS_STUDIES). NODUS names the program. The cases are well posed by
+random_cases.json in the scratch folder (NODUS_STUDIES). NODUS names the program. With --advice, cases that stop are run again with each
+change that their diagnosis.md proposes, one at a time, and these runs are checked, too. The cases are well posed by
 construction: loads in proportion to the softest body, upper bodies held by prescribed displacements or by springs.
 """
 
@@ -17,6 +18,7 @@ import json
 import math
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -332,35 +334,58 @@ def remedies_used(log):
     return {name: int(n) for name, n in re.findall(r"([a-z][a-z ]*?) (\d+)(?:,|$)", line.group(1))} if line else {}
 
 
-def run_case(options, n):
-    folder = "random_cases"
-    case = RandomCase(options.seed, n)
-    path = case.write(folder)
-    results = path[: -len(".prm")]
+def run(path, results, time_limit, changes=()):
+    """Exit code, whether the time limit stopped it, CPU seconds, log."""
     shutil.rmtree(results, ignore_errors=True)
     environment = dict(os.environ, OMP_NUM_THREADS="1")
     # CPU time: what others do on the machine decides nothing. wait4 tells what this child took, also when several run.
-    limit = f"ulimit -t {options.time_limit}; exec \"$@\""
+    limit = f"ulimit -t {time_limit}; exec \"$@\""
     with open(results + ".log", "w") as log:
-        child = subprocess.Popen(["bash", "-c", limit, "nodus", common.NODUS, path, "--set", f"Output/Results folder={results}"],
+        child = subprocess.Popen(["bash", "-c", limit, "nodus", common.NODUS, path, "--set", f"Output/Results folder={results}", *changes],
                                  stdout=log, stderr=subprocess.STDOUT, env=environment)  # fmt: skip
         _, status, usage = os.wait4(child.pid, 0)
         child.returncode = os.waitstatus_to_exitcode(status)
-        stopped = child.returncode in (-signal.SIGKILL, -signal.SIGXCPU)
     with open(results + ".log") as log:
         text = log.read()
-    row = {"case": n, **case.facts, "exit": child.returncode, "cpu": usage.ru_utime + usage.ru_stime,
+    return child.returncode, child.returncode in (-signal.SIGKILL, -signal.SIGXCPU), usage.ru_utime + usage.ru_stime, text
+
+
+def judged(results, code, facts):
+    try:
+        return checks.check(results, facts)
+    except checks.results.ResultsError as error:
+        return {"violations": [f"unreadable results: {error}"] if code == 0 else [], "measured": {}}
+
+
+def try_advice(path, results, time_limit, facts):
+    """What each change that diagnosis.md proposes comes to: the change, and the exit code or "violated"."""
+    diagnosis = os.path.join(results, "diagnosis.md")
+    if not os.path.exists(diagnosis):
+        return []
+    with open(diagnosis) as file:
+        lines = [line for line in file if line.startswith("--set ")]
+    outcomes = []
+    for k, line in enumerate(lines, 1):
+        folder = f"{results}_advice_{k}"
+        code, _, _, _ = run(path, folder, 3 * time_limit, shlex.split(line))
+        outcomes.append((line.strip(), "violated" if judged(folder, code, facts)["violations"] else code))
+    return outcomes
+
+
+def run_case(options, n):
+    case = RandomCase(options.seed, n)
+    path = case.write("random_cases")
+    results = path[: -len(".prm")]
+    code, stopped, cpu, text = run(path, results, options.time_limit)
+    row = {"case": n, **case.facts, "exit": code, "cpu": cpu,
            "cut-backs": text.count("the increment is halved"), "fallbacks": text.count(" given up: "),
            "used": remedies_used(text),
            "lost": text.count("have no master point any more")}  # fmt: skip
-    row["reason"] = text.strip().splitlines()[-1] if child.returncode else ""
-    if child.returncode:
+    row["reason"] = text.strip().splitlines()[-1] if code else ""
+    if code:
         row["cause"] = classify(row["reason"], stopped)
-    try:
-        found = checks.check(results, case.facts)
-    except checks.results.ResultsError as error:
-        found = {"violations": [f"unreadable results: {error}"] if child.returncode == 0 else [], "measured": {}}
-    row.update(found)
+        row["advice"] = try_advice(path, results, options.time_limit, case.facts) if options.advice else []
+    row.update(judged(results, code, case.facts))
     if os.path.exists(os.path.join(results, "convergence.csv")):
         with open(os.path.join(results, "convergence.csv")) as file:
             row["iterations"] = sum(r["iteration"] != "0" for r in csv.DictReader(file))
@@ -382,7 +407,10 @@ def summary(rows):
               f"{sum(r['fallbacks'] for r in rows)} / {sum(r['fallbacks'] > 0 for r in rows)}"),
              *((f"{name}: times / cases", f"{sum(r['used'].get(name, 0) for r in rows)} / {sum(name in r['used'] for r in rows)}")
                for name in sorted({name for r in rows for name in r["used"]})),
-             ("cases with closed nodes that lost their master point", sum(r["lost"] > 0 for r in rows))]  # fmt: skip
+             ("cases with closed nodes that lost their master point", sum(r["lost"] > 0 for r in rows)),
+             ("stopped cases with advice / of them finished by some / by the first",
+              " / ".join(str(sum(map(helps, (r.get("advice", []) for r in rows))))
+                         for helps in (bool, lambda a: any(o == 0 for _, o in a), lambda a: bool(a) and a[0][1] == 0)))]  # fmt: skip
     print("\n| | |\n|---|---|")
     for name, value in lines:
         print(f"| {name} | {value} |")
@@ -402,6 +430,7 @@ def main():
     parser.add_argument("--only", type=int, nargs="+", help="numbers of cases")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--time-limit", type=int, default=60, help="CPU seconds of one case")
+    parser.add_argument("--advice", action="store_true", help="try what diagnosis.md proposes")
     parser.add_argument("--write", action="store_true", help="only write the cases")
     options = parser.parse_args()
     numbers = options.only or range(1, options.cases + 1)
