@@ -121,6 +121,10 @@ class Pair:
         rows.distance[hit] = ((x[hit] - self.master.at(face, xi, eta)[0]) * rows.normal[hit]).sum(1)
         rows.g[hit, self.nodes[hit]] = 1
         np.subtract.at(rows.g, (hit[:, None], self.master.faces[face]), shape(self.degree, xi, eta)[0])
+        masters = self.master.faces[face]
+        size = self.slave_size()
+        for i, k in enumerate(hit):
+            self._balance(rows, k, masters[i], np.full(masters.shape[1], 1 / masters.shape[1]), size)
         # trapezoids, Simpson's rule, or p + 2 Gauss points (section 8), current configuration
         lumped = self.keys.get("Weights", "nodal quadrature") == "nodal quadrature"
         xi, eta, w = geometry.square_rule("Newton-Cotes" if lumped else "Gauss", self.degree + (1 if lumped else 2))
@@ -226,7 +230,8 @@ class Pair:
         rows.g[on] /= rows.area[on, None]
         rows.distance[on] = (mean[on] * rows.normal[on]).sum(1) / rows.area[on]
         for k in on:
-            self._balance(rows, k)
+            masters = np.where((np.abs(rows.g[k]) > 1e-13) & ~rows.slave)[0]
+            self._balance(rows, k, masters, np.abs(rows.g[k, masters]), np.sqrt(whole[k]))
         # nodes without partner have the area of their whole surface
         plain = np.zeros(len(self.nodes))
         xi, eta, w = geometry.square_rule("Newton-Cotes", self.degree + 1)
@@ -234,22 +239,26 @@ class Pair:
         rows.area[~rows.paired] = plain[~rows.paired]
         return rows
 
-    def _balance(self, rows, k):
-        """(J4), (J5): master weights that put the mean master point on the normal through the mean slave point, and turns for what is
+    def slave_size(self):
+        """Of the mean slave face in the reference."""
+        corners = self.bodies.X[self.slave.faces.reshape(len(self.slave.faces), -1)]
+        a, b = corners[:, -1] - corners[:, 0], corners[:, -1 - self.degree] - corners[:, self.degree]
+        return np.sqrt(np.mean(0.5 * np.linalg.norm(np.cross(a, b), axis=1)))
+
+    def _balance(self, rows, k, masters, share, size):
+        """(J4), (J5): master weights that put the (mean) master point on the normal through the slave point, and turns for what is
         left along it."""
         x, n, g = self.bodies.x, rows.normal[k], rows.g[k]
         across = np.eye(3) - np.outer(n, n)
-        masters = np.where((np.abs(g) > 1e-13) & ~rows.slave)[0]
-        weight = np.abs(g[masters])
         v = across @ (g @ x)
         length = np.linalg.norm(v)
-        limit = 0.5 * np.sqrt(rows.whole[k])
+        limit = 0.5 * size
         v *= min(1.0, limit / max(length, 1e-300))
-        y = (x[masters] - weight @ x[masters] / weight.sum()) @ across
-        values, axes = np.linalg.eigh(np.einsum("e,ei,ej->ij", weight, y, y))
-        part = np.clip((values / rows.whole[k] - 1e-6) / 9e-6, 0, 1)
+        y = (x[masters] - share @ x[masters] / share.sum()) @ across
+        values, axes = np.linalg.eigh(np.einsum("e,ei,ej->ij", share, y, y))
+        part = np.clip((values / size**2 - 1e-6) / 9e-6, 0, 1)
         factor = np.where(part > 0, part**2 * (3 - 2 * part) / np.where(part > 0, values, 1), 0)
-        slope = weight[:, None] * (y @ ((axes * factor) @ axes.T))
+        slope = share[:, None] * (y @ ((axes * factor) @ axes.T))
         g[masters] -= slope @ v
         if self.friction:
             rows.turn[k, masters] = np.clip(n @ (g @ x), -limit, limit) * slope
