@@ -53,19 +53,22 @@ namespace Nodus
       const unsigned int s = jump_site(point, a), first = 3 * a;
       const Vector3     &n = jump_.normal(s);
       for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
+      {
+        const Vector3 turn = jump_.lever(s) * e->turn;
         for (unsigned int c = 0; c < dim; ++c)
         {
           if (surfaces_.fixed(e->node, c))
             continue;
           const DoFIndex dof = surfaces_.nodes()[e->node].dofs[c];
-          if (e->turn == Vector3())
+          if (turn == Vector3())
             unknowns_.push_back({dof, first + c, 1, Vector3({e->weight, 0., 0.})});
           else
           {
-            unknowns_.push_back({dof, first, 3, n[c] * e->turn});
+            unknowns_.push_back({dof, first, 3, n[c] * turn});
             unknowns_.back().part[c] += e->weight;
           }
         }
+      }
       for (unsigned int c = 0; c < dim && !shares_.empty() && shares_[s].weight != 0.; ++c)
         surfaces_.for_each_rigid_unknown(shares_[s].body,
                                          c,

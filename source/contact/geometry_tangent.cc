@@ -160,12 +160,18 @@ namespace Nodus
     for (unsigned int e = 0; e < variation.nodes().size(); ++e)
       slip += eigen(state.increment[variation.nodes()[e]]).transpose() * rows.row(e);
     const auto   normal = rows.middleRows<3>(variation.normal());
-    const Matrix lever  = lever_variation(site, state, variation);
-    const auto   turn   = [&](const JumpOperator::Entry *const e) -> Matrix
-    { return variation.turns().middleRows<3>(3 * (e - jump_.middle(site))) + eigen(e->turn).transpose() * lever; };
-    for (const JumpOperator::Entry *e = jump_.middle(site); e != jump_.end(site) && lever.size() > 0; ++e)
+    const bool   turns  = status_.has_friction(surfaces_.pair(site)) && jump_.middle(site) != jump_.end(site);
+    const Matrix lever  = turns ? lever_variation(site, state, variation) : Matrix();
+    const auto   turn   = [&](const JumpOperator::Entry *const e) -> Matrix // times lever
+    {
+      Matrix result = eigen(e->turn).transpose() * lever;
+      if (jump_.lever(site) != 0.)
+        result += jump_.lever(site) * variation.turns().middleRows<3>(3 * (e - jump_.middle(site)));
+      return result;
+    };
+    for (const JumpOperator::Entry *e = jump_.middle(site); e != jump_.end(site) && turns; ++e)
       slip += pairing_[site].normal * state.increment[e->node] * turn(e) +
-              eigen(e->turn).transpose() * (eigen(state.increment[e->node]) * normal);
+              jump_.lever(site) * eigen(e->turn).transpose() * (eigen(state.increment[e->node]) * normal);
 
     const Matrix turned =
         eigen(law.force_normal) * normal + eigen(law.force_slip) * slip + eigen(law.force_area).transpose() * area;
@@ -181,9 +187,9 @@ namespace Nodus
       if (const JumpOperator::Entry *const e = entry[i])
       {
         block += e->weight * turned;
-        if (lever.size() > 0 && e >= jump_.middle(site))
-          block += along * (eigen(e->turn) * turned + force.transpose() * turn(e)) +
-                   (e->turn * residual.jump[site]) * normal;
+        if (turns && e >= jump_.middle(site))
+          block += along * (jump_.lever(site) * eigen(e->turn) * turned + force.transpose() * turn(e)) +
+                   jump_.lever(site) * (e->turn * residual.jump[site]) * normal;
       }
       couplings.add_force(variation.nodes()[i], variation.columns(), block);
     }
@@ -196,13 +202,11 @@ namespace Nodus
     }
   }
 
-  /// Relative variation of the lever of a site, by which its turns change (eq. G33); empty where there is none.
+  /// Variation of the lever of a site (eq. G33).
   GeometryTangent::Matrix GeometryTangent::lever_variation(const unsigned int   site,
                                                            const ContactState  &state,
                                                            const SiteVariation &variation) const
   {
-    if (jump_.lever(site) == 0.)
-      return Matrix();
     const Vector3 &n      = pairing_[site].normal;
     const Point   &origin = state.x[jump_.begin(site)->node];
     const Matrix  &rows   = variation.rows();
@@ -216,7 +220,7 @@ namespace Nodus
       apart += e->weight * (state.x[e->node] - origin);
     }
     lever += eigen(apart) * rows.middleRows<3>(variation.normal());
-    return lever / jump_.lever(site);
+    return lever;
   }
 
   /// With the rule of Pairing: the first tangent is the projection of a fixed direction, or lies across the held one.

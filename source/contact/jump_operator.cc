@@ -138,15 +138,13 @@ namespace Nodus
         const double          change = -slope.dot(beside), along = change * (arm * site.normal);
         e.weight += change;
         for (unsigned int i = 0; i < 2; ++i)
-          if (site.tangent_free[i]) // there is no friction along the other one
+          if (friction && site.tangent_free[i]) // there is no friction along the other one
             e.turn += slope[i] * b[i];
         row.offset -= along * site.normal;
         lever += along;
       }
       if (friction && std::abs(lever) > smallest_lever * row.size)
         row.lever = std::clamp(lever, -limit, limit);
-      for (Entry &e : row.master)
-        e.turn *= row.lever;
     }
 
     /// Of a slave node with averages over its faces.

@@ -34,24 +34,16 @@ namespace Nodus
   class JumpOperator
   {
   public:
-    /// A node in the jump of a site, [[u]] += weight u + turn (n . u) with the normal n of the site.
+    /// A node in the jump of a site, [[u]] += weight u + lever turn (n . u) with the normal n and the lever of the
+    /// site.
     struct Entry
     {
       unsigned int node; ///< index into ContactSurfaces::nodes()
       double       weight;
-      Vector3      turn; ///< along the surface: what its turns add to the slip of points that are apart (eq. J5)
+      /// Along the surface: what a turn of the master adds to the slip of points that are apart (eq. J5) [1/length].
+      Vector3 turn;
       /// The weight before moments are balanced and, of a master node, its part in what balances them (eq. J4).
       double unbalanced = 0., share = 0.;
-
-      Vector3 jump(const Vector3 &normal, const Vector3 &u) const
-      {
-        return weight * u + (normal * u) * turn;
-      }
-      /// What it gets of the residual r of the jump: the transposed operator.
-      Vector3 force(const Vector3 &normal, const Vector3 &r) const
-      {
-        return weight * r + (turn * r) * normal;
-      }
     };
 
     /// Sites without partner have no entry, nor have ghosts of the averaged scheme and those whose partner is not here:
@@ -81,15 +73,17 @@ namespace Nodus
     /// Jump of a nodal displacement field at a site.
     Vector3 jump(const unsigned int site, const std::vector<Vector3> &displacement) const
     {
-      Vector3 result;
+      Vector3 result, turn;
       for (const Entry *e = begin(site); e != end(site); ++e)
-        result += e->jump(normal_[site], displacement[e->node]);
-      return result;
+        result += e->weight * displacement[e->node];
+      for (const Entry *e = middle(site); e != end(site) && lever_[site] != 0.; ++e)
+        turn += (normal_[site] * displacement[e->node]) * e->turn;
+      return result + lever_[site] * turn;
     }
-    /// What an entry of the row of a site gets of the residual of the jump.
+    /// What an entry of the row of a site gets of the residual of the jump: the transposed operator.
     Vector3 force(const unsigned int site, const Entry &e, const Vector3 &residual) const
     {
-      return e.force(normal_[site], residual);
+      return e.weight * residual + lever_[site] * (e.turn * residual) * normal_[site];
     }
     const Vector3 &normal(const unsigned int site) const
     {

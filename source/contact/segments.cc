@@ -46,6 +46,20 @@ namespace Nodus
           twice += cross(corner[i - 1] - corner[0], corner[i] - corner[0]);
         return 0.5 * twice;
       }
+      /// Triangles fan out from corner 0. What rules of integration leave depends on which it is: it is to stay the
+      /// same where a corner splits in two, or the integrals would jump. The farthest one in a direction that edges
+      /// hardly ever lie across does.
+      void begin_at_extreme()
+      {
+        const auto   along = [](const Point2 &p) { return 0.854 * p[0] + 0.520 * p[1]; };
+        unsigned int first = 0;
+        for (unsigned int i = 1; i < n; ++i)
+          if (along(corner[i]) > along(corner[first]))
+            first = i;
+        std::rotate(corner.begin(), corner.begin() + first, corner.begin() + n);
+        std::rotate(origin.begin(), origin.begin() + first, origin.begin() + n);
+        std::rotate(line.begin(), line.begin() + first, line.begin() + n);
+      }
       void make_counterclockwise()
       {
         if (area() >= 0.)
@@ -128,6 +142,7 @@ namespace Nodus
         }
         polygon = rest;
       }
+      polygon.begin_at_extreme();
       return polygon;
     }
 

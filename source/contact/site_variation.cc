@@ -252,12 +252,8 @@ namespace Nodus
       slopes_.row(to_spread + k) += turned[k] * normals;
   }
 
-  void SiteVariation::vary_turns(const SitePairing     &site,
-                                 const Basis           &b,
-                                 const double           lever,
-                                 const Eigen::Matrix3d *d_b,
-                                 const Moments         &moments,
-                                 const Slope           &slope)
+  void SiteVariation::vary_turns(
+      const SitePairing &site, const Basis &b, const Eigen::Matrix3d *d_b, const Moments &moments, const Slope &slope)
   {
     const auto normals = rows_.middleRows<3>(normal());
     turns_.setZero(3 * moments.entries.size(), rows_.cols());
@@ -276,8 +272,8 @@ namespace Nodus
         for (unsigned int k = 0; k < 3; ++k)
           d_h += slope.by_spread(k, e.d)[i] * slopes_.row(to_spread + k);
         d_h.middleCols<3>(3 * place_of_source_[nodes_[e.node]]) += row[0] * eigen(b[0]) + row[1] * eigen(b[1]);
-        turn += eigen(b[i]).transpose() * (lever * (e.sign * h[i] * rows_.row(e.node) + e.size * d_h));
-        turn += lever * e.size * h[i] * d_b[i] * normals;
+        turn += eigen(b[i]).transpose() * (e.sign * h[i] * rows_.row(e.node) + e.size * d_h);
+        turn += e.size * h[i] * d_b[i] * normals;
       }
     }
   }
@@ -302,7 +298,7 @@ namespace Nodus
     vary_moments(b, d_b, moments, x);
 
     if (jump.lever(number) != 0.)
-      vary_turns(site, b, jump.lever(number), d_b, moments, slope);
+      vary_turns(site, b, d_b, moments, slope);
 
     // of the slope
     Eigen::Matrix<double, 2, n_rows> to_slope = Eigen::Matrix<double, 2, n_rows>::Zero();

@@ -91,8 +91,7 @@ namespace Nodus
                  bool                      averaged,
                  const SitePairing        &frame,
                  const std::vector<Point> &x);
-    /// After balance(): how the turns of the master nodes of a site with a lever vary at a fixed lever (eq. G34), three
-    /// rows each.
+    /// After balance(): how the turns of the master nodes of a site with a lever vary (eq. G34), three rows each.
     const Matrix &turns() const
     {
       return turns_;
@@ -104,7 +103,6 @@ namespace Nodus
     struct Slope;
     void vary_turns(const SitePairing     &site,
                     const Basis           &b,
-                    double                 lever,
                     const Eigen::Matrix3d *d_b,
                     const Moments         &moments,
                     const Slope           &slope);

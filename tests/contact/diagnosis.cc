@@ -223,12 +223,13 @@ int main(int argc, char **argv)
           "/Slave where`",
           "/Slave body=1\" --set \"Contact pair 1/Slave boundary ids=5\""});
 
-  auto strip                = p; // it buckles between two walls, and may not be relaxed
-  strip.bodies              = {box("strip", "20,2,1", {0, -0.25, 0}, {20, 0.25, 0.5}, 1000, 0.3)};
-  strip.boundary_conditions = {hold("clamp", region(1, {x_minus}), {0, 1, 2}),
-                               condition("push", Type::displacement, region(1, {x_plus}), {0, 1}, {"-1.6*t", "0"}),
-                               hold("plane strain", region(1, {z_minus, z_plus}), {2}),
-                               condition("imperfection", Type::traction, region(1, {y_plus}), {1}, {"-0.05"})};
+  auto strip                   = p; // it buckles between two walls, and may not be relaxed
+  strip.bodies                 = {box("strip", "20,2,1", {0, -0.25, 0}, {20, 0.25, 0.5}, 1000, 0.3)};
+  strip.bodies[0].material.law = MaterialParameters::Law::neo_hookean;
+  strip.boundary_conditions    = {hold("clamp", region(1, {x_minus}), {0, 1, 2}),
+                                  condition("push", Type::displacement, region(1, {x_plus}), {0, 1}, {"-1.6*t", "0"}),
+                                  hold("plane strain", region(1, {z_minus, z_plus}), {2}),
+                                  condition("imperfection", Type::traction, region(1, {y_plus}), {1}, {"-0.05"})};
   strip.contact_pairs.assign(2, p.contact_pairs[0]);
   for (const bool upper : {false, true})
   {
@@ -245,7 +246,7 @@ int main(int argc, char **argv)
   expect("a strip that buckles",
          page(strip),
          "the bodies are not stable: they buckle, snap through or soften",
-         {"negative eigenvalues", "softest_motion"});
+         {"negative eigenvalues", "`Strategy/Without` | with relaxation |"});
 
   auto driven                          = p; // both surfaces of the contact are moved, along each other
   driven.boundary_conditions[0].region = region(1, {z_plus});
