@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Three paths on which contact codes stop: sliding cantilevers with friction, a wedge in its slot, ironing. Prints the tables
-of README.md; NODUS names the program.
+"""Paths on which contact codes stop: sliding cantilevers with friction, a wedge in its slot, ironing, a rubber seal in a groove.
+Prints the tables of README.md; NODUS names the program.
 """
 
+import collections
 import os
 import sys
 
@@ -10,6 +11,7 @@ import numpy as np
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 import common
+import seal
 
 PRM = os.path.join(common.ROOT, "prm")
 MERGED = {f"{loop} loop/Mode": "newton" for loop in ("Geometry", "Threshold", "Status")}
@@ -53,6 +55,20 @@ def wedge():
                  body)  # fmt: skip
 
 
+def rubber_seal():
+    body = []
+    for n, friction in ((8, 0.5), (12, 0.3), (12, 0.5), (16, 0.5)):
+        run = common.run(seal.write(n, friction, 0.4, 8), f"hard/seal_{n}_{friction}", MERGED)
+        counts = collections.Counter()
+        for row in common.results.Results(run.folder).rows("convergence.csv"):
+            counts[row["increment"]] += row["iteration"] != "0"
+        why = "yes" if run.converged else run.log.strip().splitlines()[-1][:160]
+        body.append([f"{n} x {n}", friction, why, len(counts), max(counts.values()), sum(counts.values())] + cost(run)[1:])
+    common.table(os.path.join(common.SCRATCH, "seal.md"),
+                 ["cells", "friction", "finished", "increments", "most iterations in one", "all", "cut-backs", "fallbacks", "CPU s"],
+                 body)  # fmt: skip
+
+
 def ironing():
     variants = {
         "default": ({}, {}),
@@ -79,5 +95,5 @@ def ironing():
 
 
 if __name__ == "__main__":
-    for part in sys.argv[1:] or ("cantilevers", "wedge", "ironing"):
-        {"cantilevers": cantilevers, "wedge": wedge, "ironing": ironing}[part]()
+    for part in sys.argv[1:] or ("cantilevers", "wedge", "ironing", "seal"):
+        {"cantilevers": cantilevers, "wedge": wedge, "ironing": ironing, "seal": rubber_seal}[part]()
