@@ -46,6 +46,7 @@ namespace Nodus
       double unbalanced = 0., share = 0.;
     };
 
+    /// @p status: which pairs have friction, and what is adjusted at the start.
     /// Sites without partner have no entry, nor have ghosts of the averaged scheme and those whose partner is not here:
     /// no point of this rank's faces needs them.
     void build(const std::vector<ContactPairParameters> &pairs,
