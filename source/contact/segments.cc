@@ -12,8 +12,9 @@ namespace Nodus
   {
     using Point2 = dealii::Point<2>;
 
-    /// Faces that look away from each other less than this (cosine) do not overlap.
-    constexpr double facing_cosine = 0.1;
+    /// Faces that look away from each other less than this (cosine) do not overlap: a steep flank, whose points are far
+    /// above the slave though it begins near, would hold the mean gap open.
+    constexpr double facing_cosine = 0.5;
     /// Overlaps below this fraction of a slave cell are round-off.
     constexpr double smallest_overlap = 1e-10;
 

@@ -10,7 +10,7 @@ import numpy as np
 SINGLE = 6e-8  # files hold single precision, relative
 SHARP = 0.70710678  # faces that meet at more than 45 degrees have no common normal
 FAR_SIDE = 0.5  # a face that looks along the slave normal is the far side of a body
-FACING = 0.1
+FACING = 0.5
 # Symmetric rules on triangles (Dunavant 1985), degrees 4 and 8: weight and barycentric a of (a, a, 1 - 2a); all their weights
 # add up to 1.
 _RULES = {1: ([(0.223381589678011, 0.445948490915965), (0.109951743655322, 0.091576213509771)], None, None),
