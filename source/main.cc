@@ -154,7 +154,8 @@ namespace
 int main(int argc, char **argv)
 {
   // One thread per rank: parallelism is MPI's, and sums do not depend on scheduling.
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  int                                      no_options = 1; // PETSc, where deal.II starts it, complains of ours
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(no_options, argv, 1);
   const bool                               first_rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   try
   {

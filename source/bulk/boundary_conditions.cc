@@ -1,4 +1,5 @@
 #include "bulk/boundary_conditions.h"
+#include "base/deal_ii_versions.h"
 #include "bulk/rigid_displacement.h"
 #include "parallel/throw_everywhere.h"
 #include "parameters/expression.h"
@@ -217,8 +218,8 @@ namespace Nodus
           }
         loads_.push_back(std::move(load));
       }
-    throw_everywhere<InputError>(error, dof_handler_.get_communicator());
-    Utilities::MPI::max(found, dof_handler_.get_communicator(), found);
+    throw_everywhere<InputError>(error, communicator_of(dof_handler_));
+    Utilities::MPI::max(found, communicator_of(dof_handler_), found);
     for (const auto &load : loads_)
     {
       const unsigned int n = load.parameters - parameters_.data();
@@ -301,8 +302,8 @@ namespace Nodus
           if (where.condition == n)
             reaction_regions_.back().dofs[parameters_[n].components[where.entry]].push_back(dof);
       }
-    throw_everywhere<InputError>(error, dof_handler_.get_communicator());
-    Utilities::MPI::max(found, dof_handler_.get_communicator(), found);
+    throw_everywhere<InputError>(error, communicator_of(dof_handler_));
+    Utilities::MPI::max(found, communicator_of(dof_handler_), found);
     for (unsigned int n = 0; n < parameters_.size(); ++n)
       if (stage.acts[n])
         check_found(found, parameters_, n, label(n), "node");
@@ -314,8 +315,8 @@ namespace Nodus
   {
     const IndexSet &owned    = dof_handler_.locally_owned_dofs();
     const IndexSet  relevant = DoFTools::extract_locally_relevant_dofs(dof_handler_);
-    Vector          code_of_owned(owned, dof_handler_.get_communicator());
-    Vector          code(owned, relevant, dof_handler_.get_communicator());
+    Vector          code_of_owned(owned, communicator_of(dof_handler_));
+    Vector          code(owned, relevant, communicator_of(dof_handler_));
     for (const auto &[dof, where] : held)
       code_of_owned(dof) = 1 + dim * where.condition + where.entry;
     code_of_owned.compress(VectorOperation::insert);
@@ -343,7 +344,7 @@ namespace Nodus
 
   void BoundaryConditions::make_constraints()
   {
-    lines_.reinit(DoFTools::extract_locally_relevant_dofs(dof_handler_));
+    lines_ = no_constraints(dof_handler_);
     hanging_.add_to(lines_);
 
     // a hanging node of a region follows its masters, which belong to the region as well
@@ -378,7 +379,7 @@ namespace Nodus
                   value_complaint(one.entry < expressions.size() ? expressions[one.entry] : "", one.value, one.X, t);
       }
     }
-    throw_everywhere<InputError>(problem, dof_handler_.get_communicator());
+    throw_everywhere<InputError>(problem, communicator_of(dof_handler_));
     return changes;
   }
 

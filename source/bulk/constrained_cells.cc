@@ -1,4 +1,5 @@
 #include "bulk/constrained_cells.h"
+#include "base/deal_ii_versions.h"
 #include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
@@ -33,7 +34,7 @@ namespace Nodus
   } // namespace
 
   ConstrainedCells::ConstrainedCells(const dealii::DoFHandler<dim> &dof_handler)
-      : communicator_(dof_handler.get_communicator())
+      : communicator_(communicator_of(dof_handler))
       , hanging_(dof_handler)
   {
     if (!exist())

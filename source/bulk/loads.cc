@@ -1,4 +1,5 @@
 #include "bulk/loads.h"
+#include "base/deal_ii_versions.h"
 #include "bulk/face_table.h"
 #include "bulk/follower_pressure.h"
 #include "parallel/owned_values.h"
@@ -167,7 +168,7 @@ namespace Nodus
       }
       evaluate_dead_loads(loaded);
     }
-    throw_everywhere<InputError>(problem, dof_handler.get_communicator());
+    throw_everywhere<InputError>(problem, communicator_of(dof_handler));
   }
 
   /// Of a load at its current time; notes the first one that is no number.

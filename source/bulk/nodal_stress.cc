@@ -1,4 +1,5 @@
 #include "bulk/nodal_stress.h"
+#include "base/deal_ii_versions.h"
 #include "mesh/hanging_nodes.h"
 
 #include <deal.II/base/quadrature_lib.h>
@@ -25,13 +26,12 @@ namespace Nodus
   {
     const auto       &fe           = dof_handler.get_fe();
     const auto       &owned        = dof_handler.locally_owned_dofs();
-    const MPI_Comm    communicator = dof_handler.get_communicator();
+    const MPI_Comm    communicator = communicator_of(dof_handler);
     const QGauss<dim> quadrature(fe.degree + 1);
     FEValues<dim>     fe_values(mapping, fe, quadrature, update_values);
     const bool        plastic = solid.has_history();
 
-    IndexSet relevant;
-    DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+    const IndexSet                  relevant      = DoFTools::extract_locally_relevant_dofs(dof_handler);
     const AffineConstraints<double> hanging_nodes = hanging_constraints(dof_handler);
 
     std::vector<Vector> nodal(plastic ? 3 : 2);

@@ -1,3 +1,4 @@
+#include "base/deal_ii_versions.h"
 #include "bulk/solid_assembler_scratch.h"
 #include "parallel/throw_everywhere.h"
 #include "parallel/wait_for_all.h"
@@ -87,7 +88,7 @@ namespace Nodus
     for (const DoFIndex node : free_nodes)
       if (!owned.is_element(dim * node))
         ghosts.push_back(node);
-    const auto own_nodes = std::make_shared<NodeMap>(owned, std::move(ghosts), dof_handler.get_communicator());
+    const auto own_nodes = std::make_shared<NodeMap>(owned, std::move(ghosts), communicator_of(dof_handler));
     for (unsigned int i = 0; i < own_nodes->size(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
         dofs.push_back(dim * own_nodes->global(i) + c);
@@ -220,7 +221,7 @@ namespace Nodus
       for (const auto &line : constraints->get_lines())
         conditions.push_back(line.inhomogeneity);
     const bool same = tangent && tangent == last.tangent && values == at_nodes.u && conditions == last.conditions;
-    if (Utilities::MPI::min(same ? 1 : 0, dof_handler.get_communicator()) == 1)
+    if (Utilities::MPI::min(same ? 1 : 0, communicator_of(dof_handler)) == 1)
       return true;
     at_nodes.u.swap(values);
     last.conditions.swap(conditions);
@@ -284,7 +285,7 @@ namespace Nodus
     const auto copy = [&](const std::vector<double> &values, Vector &v)
     {
       if (v.size() != dof_handler.n_dofs() || v.locally_owned_elements() != dof_handler.locally_owned_dofs())
-        v.reinit(dof_handler.locally_owned_dofs(), dof_handler.get_communicator());
+        v.reinit(dof_handler.locally_owned_dofs(), communicator_of(dof_handler));
       std::copy_n(values.begin(), dim * nodes->n_owned(), v.trilinos_vector()[0]);
     };
     copy(at_nodes.internal, internal);
@@ -326,7 +327,7 @@ namespace Nodus
       if (failure.empty())
         scatter(batch, tangent);
     }
-    wait_for_all(dof_handler.get_communicator()); // the ranks at the contact have fewer cells
+    wait_for_all(communicator_of(dof_handler)); // the ranks at the contact have fewer cells
     constrained.exchange(!failure.empty(), tangent, {at_nodes.internal, at_nodes.external, at_nodes.rhs});
     for (unsigned int i = 0; i < dofs.size(); ++i)
       at_nodes.rhs[i] = at_nodes.is_prescribed[i] ? 0. : at_nodes.rhs[i] + at_nodes.external[i] - at_nodes.internal[i];
@@ -343,7 +344,7 @@ namespace Nodus
       if (std::any_of(kernels.begin(), kernels.end(), [](const auto &kernel) { return kernel->has_own_unknowns(); }))
         at_nodes.u_before = at_nodes.u;
     }
-    throw_everywhere<SolverFailure>(failure, dof_handler.get_communicator(), SolverFailure::Kind::inverted_cell);
+    throw_everywhere<SolverFailure>(failure, communicator_of(dof_handler), SolverFailure::Kind::inverted_cell);
   }
 
   SolidAssembler::SolidAssembler(const DoFHandler<dim>                        &dof_handler,

@@ -1,3 +1,4 @@
+#include "base/deal_ii_versions.h"
 #include "bulk/solid_assembler_scratch.h"
 #include "parallel/throw_everywhere.h"
 
@@ -68,7 +69,7 @@ namespace Nodus
       }
     if (n != history.size())
       problem = "The history of the material is not that of these cells and laws";
-    throw_everywhere<InputError>(problem, s.dof_handler.get_communicator());
+    throw_everywhere<InputError>(problem, communicator_of(s.dof_handler));
 
     std::vector<std::vector<double>> of_ghosts(s.cells.size());
     GridTools::exchange_cell_data_to_ghosts<std::vector<double>>(

@@ -1,4 +1,5 @@
 #include "bulk/stress_error.h"
+#include "base/deal_ii_versions.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -44,6 +45,6 @@ namespace Nodus
                         weight * (difference * difference) / E * points[q].JxW;
                   }
                 });
-    indicator.squared_norm = dealii::Utilities::MPI::sum(squared_norm, dof_handler.get_communicator());
+    indicator.squared_norm = dealii::Utilities::MPI::sum(squared_norm, communicator_of(dof_handler));
   }
 } // namespace Nodus

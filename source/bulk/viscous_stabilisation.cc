@@ -1,4 +1,5 @@
 #include "bulk/viscous_stabilisation.h"
+#include "base/deal_ii_versions.h"
 #include "mesh/hanging_nodes.h"
 
 #include <deal.II/base/quadrature_lib.h>
@@ -25,7 +26,7 @@ namespace Nodus
     const auto           &fe = dof_handler.get_fe();
     dealii::FEValues<dim> values(
         mapping, fe, dealii::QGauss<dim>(fe.degree + 1), dealii::update_values | dealii::update_JxW_values);
-    Vector                                  sum(owned, dof_handler.get_communicator());
+    Vector                                  sum(owned, communicator_of(dof_handler));
     const dealii::AffineConstraints<double> hanging_nodes = hanging_constraints(dof_handler);
     std::vector<DoFIndex>                   dofs(fe.n_dofs_per_cell());
     dealii::Vector<double>                  part(fe.n_dofs_per_cell());

@@ -1,4 +1,5 @@
 #include "contact/face_directory.h"
+#include "base/deal_ii_versions.h"
 #include "mesh/region.h"
 #include "parallel/sparse_exchange.h"
 
@@ -20,13 +21,13 @@ namespace Nodus
   FaceDirectory::FaceDirectory(const dealii::DoFHandler<dim> &dof_handler, const unsigned int n_pairs)
       : dof_handler_(dof_handler)
       , hanging_(dof_handler)
-      , rank_(dealii::Utilities::MPI::this_mpi_process(dof_handler.get_communicator()))
+      , rank_(dealii::Utilities::MPI::this_mpi_process(communicator_of(dof_handler)))
       , n_face_nodes_((dof_handler.get_fe().degree + 1) * (dof_handler.get_fe().degree + 1))
       , own_(2 * n_pairs)
       , size_(2 * n_pairs, 0)
   {
     const DoFIndex n_owned = dof_handler.locally_owned_dofs().n_elements();
-    for (const DoFIndex n : dealii::Utilities::MPI::all_gather(dof_handler.get_communicator(), n_owned))
+    for (const DoFIndex n : dealii::Utilities::MPI::all_gather(communicator_of(dof_handler), n_owned))
       end_of_rank_.push_back(n + (end_of_rank_.empty() ? 0 : end_of_rank_.back()));
   }
 
@@ -106,7 +107,7 @@ namespace Nodus
   {
     if (!hanging_.exist())
       return;
-    const MPI_Comm                               communicator = dof_handler_.get_communicator();
+    const MPI_Comm                               communicator = communicator_of(dof_handler_);
     std::map<unsigned int, std::vector<NodeKey>> nodes, questions;
     for (unsigned int i = 0; i < own_.size(); ++i)
       for (const FaceRecord &face : own_[i])
@@ -144,7 +145,7 @@ namespace Nodus
   void FaceDirectory::publish()
   {
     // The ranks' cells follow each other on the space-filling curve: so do their faces.
-    const MPI_Comm            communicator = dof_handler_.get_communicator();
+    const MPI_Comm            communicator = communicator_of(dof_handler_);
     std::vector<unsigned int> counts;
     for (const auto &faces : own_)
       counts.push_back(faces.size());
@@ -186,7 +187,7 @@ namespace Nodus
 
   void FaceDirectory::add_layer(std::vector<FaceRecord> &faces) const
   {
-    const MPI_Comm                                  communicator = dof_handler_.get_communicator();
+    const MPI_Comm                                  communicator = communicator_of(dof_handler_);
     std::map<unsigned int, std::set<NodeKey>>       nodes;
     std::map<unsigned int, std::vector<NodeKey>>    questions;
     std::map<unsigned int, std::vector<FaceRecord>> answers;

@@ -1,4 +1,5 @@
 #include "contact/free_motions.h"
+#include "base/deal_ii_versions.h"
 #include "mesh/region.h"
 #include "mesh/sides.h"
 
@@ -109,7 +110,7 @@ namespace Nodus
 
   void FreeMotions::hold_prescribed(const dealii::AffineConstraints<double> &constraints)
   {
-    const bool        first_rank = dealii::Utilities::MPI::this_mpi_process(dof_handler_.get_communicator()) == 0;
+    const bool        first_rank = dealii::Utilities::MPI::this_mpi_process(communicator_of(dof_handler_)) == 0;
     std::vector<bool> driven(bodies_.size(), false);
     for (unsigned int i = 0; i < rigid_bodies_.size(); ++i)
     {
@@ -220,7 +221,7 @@ namespace Nodus
   std::vector<FreeMotions::Motion> FreeMotions::free()
   {
     std::vector<double> sum(held_.data(), held_.data() + held_.size());
-    dealii::Utilities::MPI::sum(sum, dof_handler_.get_communicator(), sum);
+    dealii::Utilities::MPI::sum(sum, communicator_of(dof_handler_), sum);
     std::copy(sum.begin(), sum.end(), held_.data());
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(held_);
     const int                                            n       = held_.rows();

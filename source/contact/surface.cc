@@ -1,4 +1,5 @@
 #include "contact/surface.h"
+#include "base/deal_ii_versions.h"
 #include "contact/master_request.h"
 #include "mesh/region.h"
 #include "parallel/owned_values.h"
@@ -24,7 +25,7 @@ namespace Nodus
                                    const dealii::DoFHandler<dim>            &dof_handler,
                                    const dealii::Mapping<dim>               &mapping)
       : pairs_(pairs)
-      , communicator_(dof_handler.get_communicator())
+      , communicator_(communicator_of(dof_handler))
       , degree_(dof_handler.get_fe().degree)
       , rank_(dealii::Utilities::MPI::this_mpi_process(communicator_))
       , directory_(dof_handler, pairs.size())

@@ -37,7 +37,7 @@ namespace Nodus
     {
       const double *const values =
           place_[i] < n_owned_ ? owned + dim * place_[i] : ghost_values_.data() + dim * (place_[i] - n_owned_);
-      std::copy_n(values, dim, nodal_values[i].begin_raw());
+      std::copy_n(values, dim, &nodal_values[i][0]);
     }
   }
 

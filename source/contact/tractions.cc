@@ -98,7 +98,7 @@ namespace Nodus
                                       &result.contradictions[3]};
       std::vector<double> sums;
       for (const Vector3 *const v : vectors)
-        sums.insert(sums.end(), v->begin_raw(), v->end_raw());
+        sums.insert(sums.end(), &(*v)[0], &(*v)[0] + dim);
       for (const unsigned int *const n : counts)
         sums.push_back(*n);
       sums.push_back(result.contact_area);

@@ -1,4 +1,5 @@
 #include "mesh/bodies.h"
+#include "base/deal_ii_versions.h"
 #include "mesh/memory.h"
 #include "mesh/mesh_share.h"
 #include "parallel/throw_everywhere.h"
@@ -193,13 +194,13 @@ namespace Nodus
           }
           n_cells += cell->refine_flag_set() ? 8. : 1.;
         }
-      throw_everywhere<InputError>(problem, triangulation_->get_communicator());
-      refuse_beyond_memory(dealii::Utilities::MPI::sum(n_cells, triangulation_->get_communicator()),
+      throw_everywhere<InputError>(problem, communicator_of(*triangulation_));
+      refuse_beyond_memory(dealii::Utilities::MPI::sum(n_cells, communicator_of(*triangulation_)),
                            degree,
-                           triangulation_->get_communicator());
+                           communicator_of(*triangulation_));
       triangulation_->execute_coarsening_and_refinement();
     }
-    dealii::Utilities::MPI::sum(n_local, triangulation_->get_communicator(), n_local);
+    dealii::Utilities::MPI::sum(n_local, communicator_of(*triangulation_), n_local);
     for (unsigned int b = 0; b < parameters.size(); ++b)
       if (parameters[b].local_refinement > 0 && n_local[b] == 0)
         throw InputError(
@@ -227,7 +228,7 @@ namespace Nodus
     for (const auto &[body, id] : ids)
       own.insert(own.end(), {body, id});
     boundary_ids_.resize(size());
-    for (const auto &part : dealii::Utilities::MPI::all_gather(triangulation_->get_communicator(), own))
+    for (const auto &part : dealii::Utilities::MPI::all_gather(communicator_of(*triangulation_), own))
       for (unsigned int i = 0; i < part.size(); i += 2)
         boundary_ids_[part[i]].insert(part[i + 1]);
 
@@ -251,8 +252,8 @@ namespace Nodus
             upper[i]     = std::min(upper[i], -x[d]);
           }
       }
-    dealii::Utilities::MPI::min(lower, triangulation_->get_communicator(), lower);
-    dealii::Utilities::MPI::min(upper, triangulation_->get_communicator(), upper);
+    dealii::Utilities::MPI::min(lower, communicator_of(*triangulation_), lower);
+    dealii::Utilities::MPI::min(upper, communicator_of(*triangulation_), upper);
     for (unsigned int b = 0; b < size(); ++b)
     {
       Point low, high;

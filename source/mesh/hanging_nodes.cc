@@ -1,4 +1,5 @@
 #include "mesh/hanging_nodes.h"
+#include "base/deal_ii_versions.h"
 #include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
@@ -15,11 +16,9 @@ namespace Nodus
   {
     if (!exist_)
       return;
-    const MPI_Comm          communicator = dof_handler.get_communicator();
+    const MPI_Comm          communicator = communicator_of(dof_handler);
     const dealii::IndexSet &owned        = dof_handler.locally_owned_dofs();
-    dealii::IndexSet        relevant;
-    dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
-    dealii::AffineConstraints<double> lines(relevant);
+    auto                    lines        = no_constraints(dof_handler);
     dealii::DoFTools::make_hanging_node_constraints(dof_handler, lines);
     for (const auto &line : lines.get_lines())
       if (line.index % dim == 0)
@@ -98,9 +97,7 @@ namespace Nodus
 
   dealii::AffineConstraints<double> hanging_constraints(const dealii::DoFHandler<dim> &dof_handler)
   {
-    dealii::IndexSet relevant;
-    dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
-    dealii::AffineConstraints<double> constraints(relevant);
+    auto constraints = no_constraints(dof_handler);
     HangingNodes(dof_handler).add_to(constraints);
     constraints.close();
     return constraints;

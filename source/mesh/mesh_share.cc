@@ -256,10 +256,10 @@ namespace Nodus
       {
         mesh = read();
         for (const Point &x : mesh.vertices)
-          positions.insert(positions.end(), x.begin_raw(), x.end_raw());
+          positions.insert(positions.end(), &x[0], &x[0] + dim);
         for (const QuadraticCell &cell : mesh.curved)
           for (const Point &x : cell.nodes)
-            positions.insert(positions.end(), x.begin_raw(), x.end_raw());
+            positions.insert(positions.end(), &x[0], &x[0] + dim);
         for (const Cell &cell : mesh.cells)
           cells.insert(cells.end(), cell.vertices.begin(), cell.vertices.end());
         for (const auto &quad : mesh.boundary.boundary_quads)

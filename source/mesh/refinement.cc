@@ -1,4 +1,5 @@
 #include "mesh/refinement.h"
+#include "base/deal_ii_versions.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/distributed/grid_refinement.h>
@@ -29,7 +30,7 @@ namespace Nodus
       for (const auto &cell : triangulation.active_cell_iterators())
         if (cell->is_locally_owned())
           sum += values[cell->active_cell_index()];
-      return dealii::Utilities::MPI::sum(sum, triangulation.get_communicator());
+      return dealii::Utilities::MPI::sum(sum, communicator_of(triangulation));
     }
   } // namespace
 
@@ -93,7 +94,7 @@ namespace Nodus
   {
     using Marking                       = AdaptivityParameters::Marking;
     namespace GridRefinement            = dealii::parallel::distributed::GridRefinement;
-    const MPI_Comm         communicator = triangulation.get_communicator();
+    const MPI_Comm         communicator = communicator_of(triangulation);
     const double           n_cells      = triangulation.n_global_active_cells();
     dealii::Vector<double> error(indicator.squared_error.size());
     std::transform(indicator.squared_error.begin(), indicator.squared_error.end(), error.begin(), rounded);

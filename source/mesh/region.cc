@@ -1,4 +1,5 @@
 #include "mesh/region.h"
+#include "base/deal_ii_versions.h"
 #include "parallel/throw_everywhere.h"
 #include "parameters/expression.h"
 
@@ -79,7 +80,7 @@ namespace Nodus
         for (const auto f : cell->face_indices())
           if (contains_face(cell, f))
             test_all(cell->face(f));
-    throw_everywhere<InputError>(problem, bodies.triangulation().get_communicator());
+    throw_everywhere<InputError>(problem, communicator_of(bodies.triangulation()));
   }
 
   Region::~Region()                  = default;

@@ -1,4 +1,5 @@
 #include "mesh/sides.h"
+#include "base/deal_ii_versions.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -93,7 +94,7 @@ namespace Nodus
               side->second.upper[c] = std::max(side->second.upper[c], cell->face(f)->vertex(v)[c]);
             }
         }
-    const MPI_Comm communicator = dof_handler.get_communicator();
+    const MPI_Comm communicator = communicator_of(dof_handler);
     for (auto &of_body : sides)
       for (auto &[id, side] : of_body)
       {
@@ -126,7 +127,7 @@ namespace Nodus
               edges.emplace_back(std::min(a, b), std::max(a, b));
             }
     std::map<Edge, unsigned int> faces_at;
-    for (const auto &part : dealii::Utilities::MPI::all_gather(dof_handler.get_communicator(), edges))
+    for (const auto &part : dealii::Utilities::MPI::all_gather(communicator_of(dof_handler), edges))
       for (const Edge &edge : part)
         ++faces_at[edge];
     std::set<DoFIndex> rim;

@@ -1,5 +1,6 @@
 #include "output/vtu.h"
 #include "base/complete_file.h"
+#include "base/deal_ii_versions.h"
 #include "bulk/nodal_stress.h"
 #include "output/vtu_patches.h"
 #include "parallel/throw_everywhere.h"
@@ -79,7 +80,7 @@ namespace Nodus
     const Mapping<dim>    &mapping;
     const SolidAssembler  &solid;
 
-    MPI_Comm     communicator = bodies.triangulation().get_communicator();
+    MPI_Comm     communicator = communicator_of(bodies.triangulation());
     unsigned int rank         = Utilities::MPI::this_mpi_process(communicator);
     unsigned int n_ranks      = Utilities::MPI::n_mpi_processes(communicator);
     unsigned int degree       = dof_handler.get_fe().degree;

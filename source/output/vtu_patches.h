@@ -1,6 +1,7 @@
 #ifndef nodus_output_vtu_patches_h
 #define nodus_output_vtu_patches_h
 
+#include "base/deal_ii_versions.h"
 #include <nodus/base/types.h>
 
 #include <deal.II/base/data_out_base.h>
@@ -49,7 +50,7 @@ namespace Nodus
       flags.time                     = t;
       flags.print_date_and_time      = false; // equal runs give equal files
       flags.write_higher_order_cells = degree > 1;
-      flags.compression_level        = dealii::DataOutBase::VtkFlags::best_speed;
+      flags.compression_level        = fastest_compression;
       this->set_flags(flags);
     }
 

@@ -1,4 +1,5 @@
 #include "rigid/rigid_carrier.h"
+#include "base/deal_ii_versions.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -52,7 +53,7 @@ namespace Nodus
             if (cell->vertex_index(v) == vertex[i])
               dofs_[i] = cell->vertex_dof_index(v, 0);
     for (DoFIndex &dof : dofs_)
-      dof = dealii::Utilities::MPI::max(dof, dof_handler.get_communicator());
+      dof = dealii::Utilities::MPI::max(dof, communicator_of(dof_handler));
 
     dealii::Tensor<2, dim> edges; // in its rows
     for (unsigned int i = 1; i < n_nodes; ++i)

@@ -1,4 +1,5 @@
 #include "run/mesh_adaptation.h"
+#include "base/deal_ii_versions.h"
 #include "bulk/history_transfer.h"
 #include "bulk/stress_error.h"
 #include "contact/contact_error.h"
@@ -6,7 +7,6 @@
 #include "run/state_vectors.h"
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/distributed/solution_transfer.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,9 +67,9 @@ namespace Nodus
     const auto          hanging_before = hanging_constraints(model_.dof_handler);
     for (unsigned int n = n_displacement_vectors; n < state_before.size(); ++n)
       hanging_before.distribute(state_before[n]);
-    std::vector<Vector>                                          ghosted;
-    std::vector<const Vector *>                                  pointers;
-    dealii::parallel::distributed::SolutionTransfer<dim, Vector> transfer(model_.dof_handler);
+    std::vector<Vector>         ghosted;
+    std::vector<const Vector *> pointers;
+    SolutionTransfer            transfer(model_.dof_handler);
     for (const Vector &v : state_before)
       ghosted.push_back(model_.with_ghosts(v));
     for (const Vector &v : ghosted)

@@ -67,8 +67,7 @@ namespace Nodus
   void Model::set_up_mesh(State &now)
   {
     dof_handler.distribute_dofs(fe);
-    relevant.clear();
-    dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+    relevant            = dealii::DoFTools::extract_locally_relevant_dofs(dof_handler);
     boundary_conditions = std::make_unique<BoundaryConditions>(parameters.boundary_conditions,
                                                                bodies,
                                                                dof_handler,

@@ -50,7 +50,7 @@ namespace Nodus
     }
     inline double *write(const Vector3 &value, double *to)
     {
-      return std::copy(value.begin_raw(), value.end_raw(), to);
+      return std::copy(&value[0], &value[0] + dim, to);
     }
     inline double *write(const std::array<Vector3, 2> &value, double *to)
     {
@@ -74,7 +74,7 @@ namespace Nodus
     }
     inline const double *read(const double *from, Vector3 &value)
     {
-      std::copy_n(from, dim, value.begin_raw());
+      std::copy_n(from, dim, &value[0]);
       return from + dim;
     }
     inline const double *read(const double *from, std::array<Vector3, 2> &value)

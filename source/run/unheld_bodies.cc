@@ -1,4 +1,5 @@
 #include "run/unheld_bodies.h"
+#include "base/deal_ii_versions.h"
 #include "contact/loci.h"
 #include "mesh/sides.h"
 
@@ -79,9 +80,8 @@ namespace Nodus
       return (pressure ? "the contact multiplier of " : "the friction multiplier of ") + model.contact->locus(here) +
              ": this constraint repeats another one (over-constraint)";
     }
-    std::map<DoFIndex, Point> points;
-    dealii::DoFTools::map_dofs_to_support_points(*model.mapping, model.dof_handler, points);
-    const auto  owner = points.find(flat_index);
+    const auto  points = support_points(*model.mapping, model.dof_handler);
+    const auto  owner  = points.find(flat_index);
     std::string here =
         owner == points.end() || !layout.owned[0].is_element(flat_index) ? "" : coordinates(owner->second);
     for (const auto &part : dealii::Utilities::MPI::all_gather(model.communicator, here))

@@ -1,4 +1,5 @@
 #include "run/validation.h"
+#include "base/deal_ii_versions.h"
 #include "mesh/sides.h"
 #include "run/unheld_bodies.h"
 #include "solve/linear_solver.h"
@@ -105,7 +106,7 @@ namespace Nodus
           }
       }
       extent.nodes                = nodes.size();
-      const MPI_Comm communicator = dof_handler.get_communicator();
+      const MPI_Comm communicator = communicator_of(dof_handler);
       for (unsigned int *n : {&extent.nodes, &extent.faces, &extent.cells})
         *n = dealii::Utilities::MPI::sum(*n, communicator);
       extent.measure = dealii::Utilities::MPI::sum(extent.measure, communicator);

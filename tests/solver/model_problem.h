@@ -1,6 +1,7 @@
 #ifndef nodus_tests_solver_model_problem_h
 #define nodus_tests_solver_model_problem_h
 
+#include "base/deal_ii_versions.h"
 #include "solve/linear_solver.h"
 
 #include <deal.II/base/quadrature_lib.h>
@@ -112,20 +113,16 @@ namespace ModelProblem
       layout.communicator = MPI_COMM_WORLD;
       layout.owned[0]     = dof_handler.locally_owned_dofs();
       layout.n_u          = dof_handler.n_dofs();
-      dealii::IndexSet relevant;
-      dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
-      dealii::MappingQ1<dim>                           mapping;
-      std::map<dealii::types::global_dof_index, Point> support;
-      dealii::DoFTools::map_dofs_to_support_points(mapping, dof_handler, support);
-      constraints.reinit(relevant);
-      for (const auto i : relevant)
-        if (support[i][2] < 1e-6 || (!options.floating && support[i][2] > 2. - 1e-6))
+      const auto support  = support_points(dealii::MappingQ1<dim>(), dof_handler);
+      constraints         = no_constraints(dof_handler);
+      for (const auto &[i, x] : support)
+        if (x[2] < 1e-6 || (!options.floating && x[2] > 2. - 1e-6))
           constraints.add_line(i);
       constraints.close();
 
       for (const auto i : layout.owned[0])
         if (i % dim == 0)
-          node_positions.push_back(Point(rotate(support[i])));
+          node_positions.push_back(Point(rotate(support.at(i))));
 
       // The material is isotropic, so a tilted body has the stiffness of the straight one in turned components.
       dealii::Tensor<2, dim> Q;

@@ -1,6 +1,7 @@
 // Boundary conditions: which nodes are held, values in time, agreement and conflict of conditions, hanging nodes,
 // reactions of a uniaxial test, and the messages for wrong input.
 
+#include "base/deal_ii_versions.h"
 #include "bulk/solid_assembler.h"
 
 #include <deal.II/base/mpi.h>
@@ -85,9 +86,9 @@ namespace
         , mapping(1)
     {
       dof_handler.distribute_dofs(fe);
-      dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+      relevant = dealii::DoFTools::extract_locally_relevant_dofs(dof_handler);
       u.reinit(dof_handler.locally_owned_dofs(), relevant, communicator);
-      dealii::DoFTools::map_dofs_to_support_points(mapping, dof_handler, points);
+      points = support_points(mapping, dof_handler);
     }
 
     BoundaryConditions conditions(const std::vector<BoundaryConditionParameters> &parameters)

@@ -2,6 +2,7 @@
 // a commit keeps the stress, a superimposed rotation turns the forces, and states that are read and written again give
 // the same forces on any number of ranks.
 
+#include "base/deal_ii_versions.h"
 #include "bulk/solid_assembler.h"
 
 #include "../numbers.h"
@@ -72,12 +73,12 @@ namespace
     {
       dof_handler.distribute_dofs(fe);
       relevant = dealii::DoFTools::extract_locally_relevant_dofs(dof_handler);
-      none.reinit(relevant);
+      none     = no_constraints(dof_handler);
       none.close();
       for (const auto &body : parameters)
         materials.push_back(make_material(body.material));
       assembler = make_assembler();
-      dealii::DoFTools::map_dofs_to_support_points(mapping, dof_handler, points);
+      points    = support_points(mapping, dof_handler);
       u.reinit(dof_handler.locally_owned_dofs(), relevant, MPI_COMM_WORLD);
     }
     std::unique_ptr<SolidAssembler> make_assembler()

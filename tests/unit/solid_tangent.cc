@@ -2,6 +2,7 @@
 // forces of rigid motions, homogeneous deformations and loads are the exact ones; an inverted element fails on every
 // rank and leaves no trace.
 
+#include "base/deal_ii_versions.h"
 #include "bulk/solid_assembler.h"
 #include "solve/linear_system.h"
 
@@ -113,7 +114,7 @@ namespace
     {
       dof_handler.distribute_dofs(fe);
       relevant = dealii::DoFTools::extract_locally_relevant_dofs(dof_handler);
-      none.reinit(relevant);
+      none     = no_constraints(dof_handler);
       none.close();
       boundary_conditions =
           std::make_unique<BoundaryConditions>(conditions, bodies, dof_handler, mapping, std::vector<double>{2.});
@@ -130,7 +131,7 @@ namespace
       system.layout       = &layout;
       layout.reinit(system.rhs);
       u.reinit(dof_handler.locally_owned_dofs(), relevant, communicator);
-      dealii::DoFTools::map_dofs_to_support_points(mapping, dof_handler, points);
+      points = support_points(mapping, dof_handler);
     }
 
     /// Interpolates a displacement.

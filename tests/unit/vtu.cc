@@ -225,8 +225,7 @@ namespace
     const dealii::FESystem<dim> fe(dealii::FE_Q<dim>(degree), dim);
     dealii::DoFHandler<dim>     dof_handler(bodies.triangulation());
     dof_handler.distribute_dofs(fe);
-    dealii::IndexSet relevant;
-    dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+    const dealii::IndexSet       relevant = dealii::DoFTools::extract_locally_relevant_dofs(dof_handler);
     const dealii::MappingQ1<dim> mapping;
     Vector                       owned(dof_handler.locally_owned_dofs(), communicator);
     dealii::VectorTools::interpolate(mapping, dof_handler, Deformation(bulge), owned);
