@@ -44,7 +44,7 @@ namespace Nodus
     for (const auto &[node, masters] : masters_)
       if (!owned.is_element(dim * node))
         found[owner(node)].emplace_back(node, masters);
-    for (const DoFIndex dof : relevant)
+    for (const DoFIndex dof : dealii::DoFTools::extract_locally_relevant_dofs(dof_handler))
       if (dof % dim == 0 && !owned.is_element(dof))
         questions[owner(dof / dim)].push_back(dof / dim);
     for (const auto &[rank, received] : sparse_exchange(communicator, found))

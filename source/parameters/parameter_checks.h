@@ -5,6 +5,7 @@
 #include <nodus/parameters/parameters.h>
 
 #include <string>
+#include <utility>
 
 // What the files that check the values of a .prm file share.
 
@@ -12,6 +13,9 @@ namespace Nodus
 {
   namespace ParameterChecks
   {
+    /// A key and whether it has a value of its own.
+    using Given = std::pair<const char *, bool>;
+
     /// A subsection under inspection.
     struct Section
     {

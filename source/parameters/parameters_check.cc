@@ -20,6 +20,7 @@ namespace Nodus
 
     using ParameterChecks::check;
     using ParameterChecks::check_expression;
+    using ParameterChecks::Given;
     using ParameterChecks::is_given;
     using ParameterChecks::Section;
     using ParameterChecks::share_faces;
@@ -94,19 +95,20 @@ namespace Nodus
       else
       {
         section.require(material.youngs_modulus > 0., "Young's modulus", "must be given and > 0");
-        for (const auto &[key, values] : {std::make_pair("Ogden moduli", &material.ogden_moduli),
-                                          std::make_pair("Ogden exponents", &material.ogden_exponents)})
+        for (const auto &[key, values] :
+             {std::pair<const char *, const std::vector<double> *>("Ogden moduli", &material.ogden_moduli),
+              std::pair<const char *, const std::vector<double> *>("Ogden exponents", &material.ogden_exponents)})
           section.require(values->empty(), key, "has no effect on this law; remove it or set Law = Ogden");
       }
       if (material.law == Law::j2_plasticity)
         check_hardening(section, material);
       else
-        for (const auto &[key, given] : {std::make_pair("Yield stress", material.yield_stress != 0.),
-                                         std::make_pair("Hardening modulus", material.hardening_modulus != 0.),
-                                         std::make_pair("Saturation stress", material.saturation_stress != 0.),
-                                         std::make_pair("Saturation rate", material.saturation_rate != 0.),
-                                         std::make_pair("Hardening strains", !material.hardening_strains.empty()),
-                                         std::make_pair("Hardening stresses", !material.hardening_stresses.empty())})
+        for (const auto &[key, given] : {Given("Yield stress", material.yield_stress != 0.),
+                                         Given("Hardening modulus", material.hardening_modulus != 0.),
+                                         Given("Saturation stress", material.saturation_stress != 0.),
+                                         Given("Saturation rate", material.saturation_rate != 0.),
+                                         Given("Hardening strains", !material.hardening_strains.empty()),
+                                         Given("Hardening stresses", !material.hardening_stresses.empty())})
           section.require(!given, key, "has no effect on this law; remove it or set Law = J2 plasticity");
     }
 
@@ -158,12 +160,12 @@ namespace Nodus
                       "Generator",
                       "is given besides Mesh file; remove one of the two");
       if (!body.has_mesh())
-        for (const auto &[key, given] : {std::make_pair("Generator arguments", !body.generator_arguments.empty()),
-                                         std::make_pair("Scale", body.scale != 1.),
-                                         std::make_pair("Rotation angle", body.rotation_angle != 0.),
-                                         std::make_pair("Translation", body.translation != Vector3()),
-                                         std::make_pair("Global refinement", body.global_refinement > 0),
-                                         std::make_pair("Local refinement", body.local_refinement > 0)})
+        for (const auto &[key, given] : {Given("Generator arguments", !body.generator_arguments.empty()),
+                                         Given("Scale", body.scale != 1.),
+                                         Given("Rotation angle", body.rotation_angle != 0.),
+                                         Given("Translation", body.translation != Vector3()),
+                                         Given("Global refinement", body.global_refinement > 0),
+                                         Given("Local refinement", body.local_refinement > 0)})
           section.require(
               !given, key, "has no effect on a rigid body without a mesh; remove it, or give Mesh file or Generator");
       if (!body.mesh_file.empty())

@@ -79,10 +79,9 @@ namespace Nodus
       const bool tied    = pair.contact_law == ContactPairParameters::ContactLaw::tied,
                  coulomb = pair.friction_coefficient > 0.;
       for (const auto &[key, given] :
-           {std::make_pair("Friction coefficient", coulomb),
-            std::make_pair("Shear limit", pair.shear_limit > 0.),
-            std::make_pair("Initial overclosure",
-                           pair.start.overclosure != ContactPairParameters::InitialOverclosure::resolve)})
+           {Given("Friction coefficient", coulomb),
+            Given("Shear limit", pair.shear_limit > 0.),
+            Given("Initial overclosure", pair.start.overclosure != ContactPairParameters::InitialOverclosure::resolve)})
         section.require(!tied || !given, key, "has no effect on a tied pair; remove it");
       section.require(pair.contact_law == ContactPairParameters::ContactLaw::unilateral ||
                           pair.start.overclosure == ContactPairParameters::InitialOverclosure::resolve,
@@ -128,11 +127,11 @@ namespace Nodus
         section.require(!share_faces(pair.slave, pair.master),
                         "Master boundary ids",
                         "names faces that are slaves of the same pair; give the two sides different bodies or ids");
-        for (const auto &[key, given] : {std::make_pair("Master point", surface.point != Point()),
-                                         std::make_pair("Master axis", surface.axis != Vector3()),
-                                         std::make_pair("Master radius", surface.radius != 0.),
-                                         std::make_pair("Master cavity", surface.cavity),
-                                         std::make_pair("Master translation", is_given(surface.motion))})
+        for (const auto &[key, given] : {Given("Master point", surface.point != Point()),
+                                         Given("Master axis", surface.axis != Vector3()),
+                                         Given("Master radius", surface.radius != 0.),
+                                         Given("Master cavity", surface.cavity),
+                                         Given("Master translation", is_given(surface.motion))})
           section.require(
               !given,
               key,
@@ -141,8 +140,8 @@ namespace Nodus
         return;
       }
       const std::string shape = text_of(surface.shape);
-      for (const auto &[key, given] : {std::make_pair("Master boundary ids", !pair.master.boundary_ids.empty()),
-                                       std::make_pair("Master where", !pair.master.where.empty())})
+      for (const auto &[key, given] : {Given("Master boundary ids", !pair.master.boundary_ids.empty()),
+                                       Given("Master where", !pair.master.where.empty())})
         section.require(!given,
                         key,
                         "has no meaning besides 'Master surface = " + shape +
