@@ -31,7 +31,7 @@ namespace Nodus
         {
           const unsigned int p = (r + 1) % dim, q = (r + 2) % dim;
           const Lanes        twice = 2. * A[p][q], difference = A[q][q] - A[p][p];
-          Lanes              root, cosine;
+          Lanes              root = {}, cosine = {};
           sqrt(difference * difference + twice * twice, root);
           // the tangent of the smaller angle; 0 for a diagonal matrix
           const Lanes denominator = (difference >= 0. ? difference + root : difference - root);

@@ -57,9 +57,17 @@ namespace Nodus
         for (unsigned int i = 1; i < n; ++i)
           if (along(corner[i]) > along(corner[first]))
             first = i;
-        std::rotate(corner.begin(), corner.begin() + first, corner.begin() + n);
-        std::rotate(origin.begin(), origin.begin() + first, origin.begin() + n);
-        std::rotate(line.begin(), line.begin() + first, line.begin() + n);
+        if (first == 0)
+          return;
+        const Polygon before = *this;
+        for (unsigned int i = 0; i < n; ++i, ++first)
+        {
+          if (first == n)
+            first = 0;
+          corner[i] = before.corner[first];
+          origin[i] = before.origin[first];
+          line[i]   = before.line[first];
+        }
       }
       void make_counterclockwise()
       {

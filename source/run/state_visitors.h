@@ -50,7 +50,9 @@ namespace Nodus
     }
     inline double *write(const Vector3 &value, double *to)
     {
-      return std::copy(&value[0], &value[0] + dim, to);
+      for (unsigned int c = 0; c < dim; ++c)
+        *to++ = value[c];
+      return to;
     }
     inline double *write(const std::array<Vector3, 2> &value, double *to)
     {
