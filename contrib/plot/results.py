@@ -30,6 +30,14 @@ _LATTICE = {
 _LATTICE = {kind: [tuple(int(digit) for digit in node) for node in text.split()] for kind, text in _LATTICE.items()}
 
 
+def _lattice(kind, version):
+    """In files of version 2.2, which deal.II 9.5 and later write, two edges of quadratic hexahedra have changed places."""
+    nodes = list(_LATTICE[kind])
+    if kind == 72 and version >= (2, 2):
+        nodes[18], nodes[19] = nodes[19], nodes[18]
+    return nodes
+
+
 class Mesh:
     """points (n, 3) on the deformed configuration; fields: name -> (n,) or (n, 3) or (n, 9); cells: array (n_cells,
     nodes per direction, ...) of point numbers, last index along the first local direction."""
@@ -67,12 +75,13 @@ def _decode(array):
 
 
 def _read_piece(name):
-    piece = ElementTree.parse(name).getroot().find("UnstructuredGrid/Piece")
+    root = ElementTree.parse(name).getroot()
+    piece = root.find("UnstructuredGrid/Piece")
     if int(piece.get("NumberOfCells")) == 0:
         return None
     points = _decode(piece.find("Points/DataArray")).astype(float).reshape(-1, 3)
     cells = {array.get("Name"): _decode(array) for array in piece.find("Cells")}
-    lattice = _LATTICE[int(cells["types"][0])]
+    lattice = _lattice(int(cells["types"][0]), tuple(int(part) for part in root.get("version").split(".")))
     n = max(lattice)[0] + 1
     connectivity = cells["connectivity"].reshape(-1, len(lattice))
     grid = np.zeros((len(connectivity),) + (n,) * len(lattice[0]), int)

@@ -121,7 +121,9 @@ namespace Nodus
       try
       {
         dealii::GridGenerator::generate_from_name_and_arguments(
-            *mesh, parameters.generator, parameters.generator_arguments);
+            *mesh,
+            parameters.generator,
+            Generators::arguments_for_deal_ii(parameters.generator, parameters.generator_arguments));
       }
       catch (const dealii::ExceptionBase &error)
       {

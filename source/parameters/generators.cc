@@ -11,6 +11,8 @@
 #include <cmath>
 #include <iterator>
 #include <sstream>
+#include <type_traits>
+#include <utility>
 
 namespace Nodus
 {
@@ -319,6 +321,26 @@ namespace Nodus
       if (!wrong.empty())
         wrong += "; give, separated by ':', " + arguments(name) + "; for example " + generator->example;
       return wrong;
+    }
+
+    namespace
+    {
+      template <typename Mesh, typename = void>
+      struct CylinderShellHasColours : std::false_type
+      {
+      };
+      template <typename Mesh>
+      struct CylinderShellHasColours<Mesh,
+                                     decltype(dealii::GridGenerator::cylinder_shell(
+                                         std::declval<Mesh &>(), 1., 1., 2., 0u, 0u, false))> : std::true_type
+      {
+      };
+    } // namespace
+
+    std::string arguments_for_deal_ii(const std::string &name, const std::string &arguments)
+    {
+      const bool has_colours = CylinderShellHasColours<dealii::Triangulation<3>>::value;
+      return arguments + (has_colours && name == "cylinder_shell" ? " : false" : "");
     }
   } // namespace Generators
 } // namespace Nodus

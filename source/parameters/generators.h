@@ -25,6 +25,9 @@ namespace Nodus
     /// the generator is one that names() does not have.
     std::string mistake_in_arguments(const std::string &name, const std::string &text);
 
+    /// What deal.II's function is called with: in newer versions some have one argument more.
+    std::string arguments_for_deal_ii(const std::string &name, const std::string &arguments);
+
     /// Number of cells that the generator makes, but for a factor of 30 at most; 1 where the arguments do not say.
     double n_cells(const std::string &name, const std::string &arguments);
   } // namespace Generators

@@ -21,7 +21,8 @@ namespace
     dealii::Triangulation<3> mesh;
     try
     {
-      dealii::GridGenerator::generate_from_name_and_arguments(mesh, name, arguments);
+      dealii::GridGenerator::generate_from_name_and_arguments(
+          mesh, name, Generators::arguments_for_deal_ii(name, arguments));
     }
     catch (const std::exception &)
     {

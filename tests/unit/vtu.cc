@@ -12,7 +12,7 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_q1.h>
-#include <deal.II/lac/trilinos_vector.h>
+#include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/numerics/vector_tools.h>
 
 #include <boost/iostreams/copy.hpp>
@@ -47,13 +47,17 @@ namespace
 
     std::map<std::string, std::vector<double>> values;
     std::map<std::string, unsigned int>        components;
+    std::string                                version; ///< of the file format
 
   private:
     void add_piece(const std::string &name)
     {
       std::stringstream text;
       text << std::ifstream(name).rdbuf();
-      const std::string  all = text.str();
+      const std::string all = text.str();
+      std::smatch       type;
+      if (std::regex_search(all, type, std::regex("<VTKFile [^>]*version=\"([0-9.]*)\"")))
+        version = type[1];
       const std::regex   array("<DataArray type=\"([A-Za-z0-9]*)\"([^>]*)format=\"binary\">\\s*([A-Za-z0-9+/=]*)"
                                "\\s*</DataArray>");
       const unsigned int n_points_before = values["Points"].size() / dim;
@@ -101,12 +105,14 @@ namespace
   double volume(const Vtu &vtu, const unsigned int degree)
   {
     // corners, edges, faces, centre of a VTK Lagrange hexahedron as written to files of version 0.1, as (i, j, k) of
-    // the 3x3x3 grid
-    constexpr unsigned int  grid[27][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2},
-                                           {0, 2, 2}, {1, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2},
-                                           {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1}, {0, 2, 1}, {2, 2, 1}, {0, 1, 1},
-                                           {2, 1, 1}, {1, 0, 1}, {1, 2, 1}, {1, 1, 0}, {1, 1, 2}, {1, 1, 1}};
-    const dealii::FE_Q<dim> fe(degree);
+    // the 3x3x3 grid; in those of version 2.2, of deal.II 9.5 and later, two edges have changed places
+    unsigned int grid[27][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2},
+                                {0, 2, 2}, {1, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2},
+                                {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1}, {0, 2, 1}, {2, 2, 1}, {0, 1, 1},
+                                {2, 1, 1}, {1, 0, 1}, {1, 2, 1}, {1, 1, 0}, {1, 1, 2}, {1, 1, 1}};
+    if (vtu.version == "2.2")
+      std::swap(grid[18], grid[19]);
+    const dealii::FE_Q<dim>   fe(degree);
     const dealii::QGauss<dim> quadrature(degree + 2);
     const unsigned int        n_nodes = fe.n_dofs_per_cell();
 
