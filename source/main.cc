@@ -5,7 +5,6 @@
 #include <deal.II/base/config.h>
 #include <deal.II/base/mpi.h>
 
-#include <Trilinos_version.h>
 #include <dmumps_c.h>
 #if __has_include(<muParserDef.h>)
 #  include <muParserDef.h>
@@ -94,7 +93,6 @@ namespace
   {
     std::string text = "nodus " NODUS_VERSION "\n";
     text += "deal.II " DEAL_II_PACKAGE_VERSION "\n";
-    text += "Trilinos " TRILINOS_VERSION_STRING "\n";
     text += "MUMPS " MUMPS_VERSION "\n";
     text += "p4est " + std::to_string(DEAL_II_P4EST_VERSION_MAJOR) + '.' + std::to_string(DEAL_II_P4EST_VERSION_MINOR) +
             '.' + std::to_string(DEAL_II_P4EST_VERSION_SUBMINOR) + '\n';

@@ -34,10 +34,8 @@ namespace Nodus
     const IndexSet                  relevant      = DoFTools::extract_locally_relevant_dofs(dof_handler);
     const AffineConstraints<double> hanging_nodes = hanging_constraints(dof_handler);
 
-    std::vector<Vector> nodal(plastic ? 3 : 2);
-    for (auto &v : nodal)
-      v.reinit(owned, communicator);
-    Vector mass(owned, communicator);
+    Vector              mass = sums_over_cells(dof_handler, hanging_nodes);
+    std::vector<Vector> nodal(plastic ? 3 : 2, mass);
 
     const unsigned int                  n_dofs = fe.n_dofs_per_cell();
     std::vector<DoFIndex>               dofs(n_dofs);
@@ -81,6 +79,7 @@ namespace Nodus
       hanging_nodes.distribute(nodal[part]);
       values_[part].reinit(owned, relevant, communicator);
       values_[part] = nodal[part];
+      values_[part].update_ghost_values();
     }
   }
 

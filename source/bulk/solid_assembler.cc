@@ -5,7 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/lac/trilinos_vector.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 #include <algorithm>
 #include <cmath>
@@ -286,7 +286,7 @@ namespace Nodus
     {
       if (v.size() != dof_handler.n_dofs() || v.locally_owned_elements() != dof_handler.locally_owned_dofs())
         v.reinit(dof_handler.locally_owned_dofs(), communicator_of(dof_handler));
-      std::copy_n(values.begin(), dim * nodes->n_owned(), v.trilinos_vector()[0]);
+      std::copy_n(values.begin(), dim * nodes->n_owned(), v.begin());
     };
     copy(at_nodes.internal, internal);
     copy(at_nodes.external, external);

@@ -4,7 +4,7 @@
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/lac/trilinos_vector.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 namespace Nodus
 {
@@ -26,8 +26,8 @@ namespace Nodus
     const auto           &fe = dof_handler.get_fe();
     dealii::FEValues<dim> values(
         mapping, fe, dealii::QGauss<dim>(fe.degree + 1), dealii::update_values | dealii::update_JxW_values);
-    Vector                                  sum(owned, communicator_of(dof_handler));
     const dealii::AffineConstraints<double> hanging_nodes = hanging_constraints(dof_handler);
+    Vector                                  sum           = sums_over_cells(dof_handler, hanging_nodes);
     std::vector<DoFIndex>                   dofs(fe.n_dofs_per_cell());
     dealii::Vector<double>                  part(fe.n_dofs_per_cell());
     for (const auto &cell : dof_handler.active_cell_iterators())

@@ -5,7 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/lac/trilinos_vector.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 #include <Eigen/Eigenvalues>
 

@@ -1,7 +1,7 @@
 #include "contact/surface_gather.h"
 #include "parallel/ownership.h"
 
-#include <deal.II/lac/trilinos_vector.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 #include <algorithm>
 
@@ -30,7 +30,7 @@ namespace Nodus
 
   void SurfaceGather::gather(const Vector &v, std::vector<Vector3> &nodal_values) const
   {
-    const double *const owned = v.trilinos_vector()[0];
+    const double *const owned = v.begin();
     exchange_.fetch(owned, ghost_values_.data(), dim);
     nodal_values.resize(place_.size());
     for (unsigned int i = 0; i < place_.size(); ++i)
@@ -43,7 +43,7 @@ namespace Nodus
 
   void SurfaceGather::add(const std::vector<Vector3> &nodal_values, Vector &v) const
   {
-    double *const owned = v.trilinos_vector()[0];
+    double *const owned = v.begin();
     for (unsigned int i = 0; i < place_.size(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
         if (place_[i] < n_owned_)

@@ -102,4 +102,14 @@ namespace Nodus
     constraints.close();
     return constraints;
   }
+
+  Vector sums_over_cells(const dealii::DoFHandler<dim>           &dof_handler,
+                         const dealii::AffineConstraints<double> &constraints)
+  {
+    dealii::IndexSet ghosts = dealii::DoFTools::extract_locally_relevant_dofs(dof_handler);
+    for (const auto &line : constraints.get_lines())
+      for (const auto &[dof, weight] : line.entries)
+        ghosts.add_index(dof);
+    return Vector(dof_handler.locally_owned_dofs(), ghosts, communicator_of(dof_handler));
+  }
 } // namespace Nodus

@@ -51,6 +51,11 @@ namespace Nodus
   /// The closed constraints of the hanging nodes, among the locally relevant degrees of freedom. Collective.
   dealii::AffineConstraints<double> hanging_constraints(const dealii::DoFHandler<dim> &dof_handler);
 
+  /// Zero at all degrees of freedom that cells of this rank add to, by way of @p constraints too: compress() then takes
+  /// to their owners what is added to those of others. Collective.
+  Vector sums_over_cells(const dealii::DoFHandler<dim>           &dof_handler,
+                         const dealii::AffineConstraints<double> &constraints);
+
   /// Whether a closed line of @p constraints sets @p dof to a value: it is prescribed, or all that it follows is.
   inline bool is_prescribed(const dealii::AffineConstraints<double> &constraints, const DoFIndex dof)
   {

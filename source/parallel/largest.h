@@ -4,7 +4,7 @@
 #include <nodus/base/types.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/lac/trilinos_vector.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 
 namespace Nodus
 {
-  /// The largest absolute value of numbers: infinity where one of them is none. Trilinos' norm and std::max() pass over
-  /// those.
+  /// The largest absolute value of numbers: infinity where one of them is none. Norms of vectors and std::max() pass
+  /// over those.
   class Largest
   {
   public:
@@ -35,8 +35,8 @@ namespace Nodus
   inline double largest_entry(const Vector &v)
   {
     Largest             largest;
-    const double *const values = v.trilinos_vector()[0];
-    for (int i = 0; i < v.trilinos_vector().MyLength(); ++i)
+    const double *const values = v.begin();
+    for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
       largest.add(values[i]);
     return largest.on_all_ranks(v.get_mpi_communicator());
   }

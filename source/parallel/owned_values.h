@@ -3,7 +3,7 @@
 
 #include <nodus/base/types.h>
 
-#include <deal.II/lac/trilinos_vector.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 namespace Nodus
 {
@@ -13,8 +13,8 @@ namespace Nodus
   {
   public:
     explicit OwnedValues(Vector &v)
-        : values_(v.trilinos_vector()[0])
-        , first_(v.trilinos_partitioner().MinMyGID())
+        : values_(v.begin())
+        , first_(v.get_partitioner()->local_range().first)
     {
     }
     double &operator()(const DoFIndex i) const

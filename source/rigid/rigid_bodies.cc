@@ -3,7 +3,7 @@
 
 #include <deal.II/base/numbers.h>
 #include <deal.II/fe/fe.h>
-#include <deal.II/lac/trilinos_vector.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 #include <Eigen/Geometry>
 

@@ -176,8 +176,10 @@ namespace Nodus
     if (const VtuOutput *const vtu = results_.vtu())
       common.series = vtu->series();
 
-    std::vector<Vector> vectors;
-    for (const Vector &v : exact_vectors(states_.committed, *model_.contact))
+    const std::vector<Vector> exact = exact_vectors(states_.committed, *model_.contact);
+    std::vector<Vector>       vectors;
+    vectors.reserve(exact.size()); // a copy would not have the ghosts
+    for (const Vector &v : exact)
       vectors.push_back(model_.with_ghosts(v));
 
     Checkpoints::Piece               piece;

@@ -298,6 +298,7 @@ namespace Nodus
         return p.model.with_ghosts(v);
       };
       std::vector<VtuOutput::NodalField> fields;
+      fields.reserve(6); // a copy would not have the ghosts
       fields.push_back({{"residual_force"}, p.model.with_ghosts(p.equilibrium.forces().out_of_balance)});
       if (has_motion(p))
         fields.push_back({{"softest_motion"}, p.model.with_ghosts(p.softest_motion)});

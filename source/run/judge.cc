@@ -52,8 +52,8 @@ namespace Nodus
       }
       void nodes(const Vector &v)
       {
-        const double *const values = v.trilinos_vector()[0];
-        for (int i = 0; i < v.trilinos_vector().MyLength(); ++i)
+        const double *const values = v.begin();
+        for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
           largest.add(values[i]);
       }
       void multipliers(const Vector &v, unsigned int)

@@ -70,6 +70,7 @@ namespace Nodus
     std::vector<Vector>         ghosted;
     std::vector<const Vector *> pointers;
     SolutionTransfer            transfer(model_.dof_handler);
+    ghosted.reserve(state_before.size()); // a copy would not have the ghosts
     for (const Vector &v : state_before)
       ghosted.push_back(model_.with_ghosts(v));
     for (const Vector &v : ghosted)
@@ -83,15 +84,20 @@ namespace Nodus
     equilibrium_.begin_on_mesh();
     results_.begin_on_mesh();
 
-    std::vector<Vector>   after(ghosted.size(),
-                              Vector(model_.contact->surfaces().layout().owned[0], model_.communicator));
-    std::vector<Vector *> after_pointers;
-    for (Vector &v : after)
-      after_pointers.push_back(&v);
-    transfer.interpolate(after_pointers);
-    const auto hanging_nodes = hanging_constraints(model_.dof_handler);
-    for (Vector &v : after)
-      hanging_nodes.distribute(v);
+    // cells set their nodes, those of other ranks too
+    const dealii::IndexSet &owned = model_.contact->surfaces().layout().owned[0];
+    std::vector<Vector>     interpolated(ghosted.size(), Vector(owned, model_.relevant, model_.communicator));
+    std::vector<Vector *>   targets;
+    for (Vector &v : interpolated)
+      targets.push_back(&v);
+    transfer.interpolate(targets);
+    const auto          hanging_nodes = hanging_constraints(model_.dof_handler);
+    std::vector<Vector> after(interpolated.size(), Vector(owned, model_.communicator));
+    for (unsigned int n = 0; n < after.size(); ++n)
+    {
+      after[n] = interpolated[n];
+      hanging_nodes.distribute(after[n]);
+    }
     histories.finish(*model_.solid);
     states_.now.history = model_.solid->start();
     take_interpolated(after, *model_.contact, states_.now);

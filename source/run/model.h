@@ -46,7 +46,8 @@ namespace Nodus
 
     /// Young's modulus of the softer side of each pair.
     std::vector<double> pair_stiffness() const;
-    /// A copy of a fully distributed vector of displacements with ghost entries. Collective.
+    /// A copy of a fully distributed vector of displacements with ghost entries, which copies of it do not have.
+    /// Collective.
     Vector with_ghosts(const Vector &v) const;
     /// "3 bodies, 120 cells, ...", and a line for each contact pair.
     std::vector<std::string> summary() const;

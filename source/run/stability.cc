@@ -24,7 +24,7 @@ namespace Nodus
   void Stability::begin_on_mesh()
   {
     solver_.reset();
-    mode_.clear();
+    mode_ = Vector();
   }
 
   /// A motion that has all others in it, the same on any number of ranks.
@@ -63,7 +63,7 @@ namespace Nodus
       const double largest = motion.block(0).linfty_norm();
       if (!std::isfinite(work) || !(largest > 0.))
       {
-        mode_.clear();
+        mode_ = Vector();
         return false;
       }
       stiffness = work;

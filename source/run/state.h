@@ -7,7 +7,7 @@
 #include "rigid/rigid_bodies.h"
 #include <nodus/base/types.h>
 
-#include <deal.II/lac/trilinos_parallel_block_vector.h>
+#include <deal.II/lac/la_parallel_block_vector.h>
 
 #include <vector>
 
@@ -25,17 +25,6 @@ namespace Nodus
     Vector   applied;  ///< loads and reactions as the increment begins [force]
     Energies energies; ///< up to then
     double   stiffness_scale = 0.; ///< largest diagonal entry of the first bulk tangent
-
-    State()              = default;
-    State(const State &) = default;
-    State(State &&)      = default;
-    /// The copy has the partition of @p other: vectors of Trilinos keep their own where only the sizes are equal, as
-    /// those of the multipliers may be before and after a change of the mesh.
-    State &operator=(const State &other)
-    {
-      return *this = State(other);
-    }
-    State &operator=(State &&) = default;
   };
 
   /// The state at hand, and the one that the increment began with.

@@ -3,8 +3,6 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <Epetra_MpiComm.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -54,12 +52,6 @@ namespace Nodus
     for (const unsigned int i : nodes)
       ghosts.push_back(global(i));
     return GhostExchange::numbered_through(start_, ghosts, communicator_);
-  }
-
-  Epetra_Map NodeMap::dof_map() const
-  {
-    return Epetra_Map(
-        static_cast<int>(dim * n_global()), static_cast<int>(dim * n_owned_), 0, Epetra_MpiComm(communicator_));
   }
 
   unsigned int NodeMap::local(const DoFIndex node) const

@@ -5,8 +5,6 @@
 
 #include <deal.II/base/index_set.h>
 
-#include <Epetra_Map.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <functional>
@@ -58,9 +56,7 @@ namespace Nodus
     {
       return i < n_owned_ ? first_ + i : ghosts_[i - n_owned_];
     }
-    /// The owned degrees of freedom. Collective.
-    Epetra_Map dof_map() const;
-    DoFIndex   n_global() const
+    DoFIndex n_global() const
     {
       return start_.back();
     }

@@ -102,18 +102,18 @@ namespace Nodus
 
   void BlockPreconditioner::vmult(BlockVector &dst, const BlockVector &src) const
   {
-    const double *const g = src.block(1).trilinos_vector()[0];
+    const double *const g = src.block(1).begin();
     std::copy_n(g, multiplier_part_.size(), multiplier_part_.begin());
     apply_multiplier_blocks(multiplier_part_.data());
     augmented_rhs_ = src.block(0);
-    system_.B().add_transposed_product(multiplier_part_.data(), augmented_rhs_.trilinos_vector()[0]);
+    system_.B().add_transposed_product(multiplier_part_.data(), augmented_rhs_.begin());
 
     multigrid_->vmult(dst.block(0), augmented_rhs_);
 
-    double *const m = dst.block(1).trilinos_vector()[0];
+    double *const m = dst.block(1).begin();
     for (std::size_t i = 0; i < multiplier_part_.size(); ++i)
       m[i] = -g[i];
-    system_.B().add_product(dst.block(0).trilinos_vector()[0], m);
+    system_.B().add_product(dst.block(0).begin(), m);
     apply_multiplier_blocks(m);
   }
 } // namespace Nodus

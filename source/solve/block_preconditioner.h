@@ -5,7 +5,7 @@
 #include "solve/multigrid/multigrid.h"
 #include "solve/saddle_point_operator.h"
 
-#include <deal.II/lac/trilinos_vector.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 #include <array>
 #include <memory>

@@ -1,8 +1,11 @@
 #include "solve/bordered_system.h"
+#include "parallel/ownership.h"
 
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace Nodus
 {
@@ -15,28 +18,30 @@ namespace Nodus
     for (std::vector<BlockVector> *const vectors : {&B_, &C_})
       for (BlockVector &v : *vectors)
         layout.reinit(v);
-    const auto add = [&](BlockVector &v, const DoFIndex flat, const double value)
+    std::array<std::vector<MatrixEntry>, 3> entries; // of the blocks: their row, and the column of B, then of C^T
+    const auto                              add = [&](const DoFIndex flat, const DoFIndex column, const double value)
     {
       const DoFIndex multiplier = flat - std::min(flat, layout.n_u);
       if (flat < layout.n_u)
-        v.block(0)(flat) += value;
+        entries[0].push_back({flat, column, value});
       else if (multiplier < layout.n_slave_nodes)
-        v.block(1)(multiplier) += value;
+        entries[1].push_back({multiplier, column, value});
       else
-        v.block(2)(multiplier - layout.n_slave_nodes) += value;
+        entries[2].push_back({multiplier - layout.n_slave_nodes, column, value});
     };
     std::vector<double>  D(B_.size() * B_.size(), 0.);
     const TripletMatrix &border = system.border;
     for (std::size_t k = 0; k < border.value.size(); ++k)
       if (border.row[k] < layout.size())
-        add(B_[border.column[k] - layout.size()], border.row[k], border.value[k]);
+        add(border.row[k], border.column[k] - layout.size(), border.value[k]);
       else if (border.column[k] < layout.size())
-        add(C_[border.row[k] - layout.size()], border.column[k], border.value[k]);
+        add(border.column[k], B_.size() + border.row[k] - layout.size(), border.value[k]);
       else
         D[(border.row[k] - layout.size()) * B_.size() + border.column[k] - layout.size()] += border.value[k];
-    for (std::vector<BlockVector> *const vectors : {&B_, &C_})
-      for (BlockVector &v : *vectors)
-        v.compress(dealii::VectorOperation::add);
+    for (unsigned int block = 0; block < 3; ++block)
+      for (const MatrixEntry &e :
+           Ownership(layout.owned[block], layout.communicator).exchange(std::move(entries[block])))
+        (e.column < B_.size() ? B_[e.column] : C_[e.column - B_.size()]).block(block)(e.row) = e.value;
     dealii::Utilities::MPI::sum(D, layout.communicator, D);
     D_ = dealii::FullMatrix<double>(B_.size(), B_.size(), D.data());
   }

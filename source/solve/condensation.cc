@@ -285,8 +285,8 @@ namespace Nodus
 
   void Condensation::vmult(Vector &y, const Vector &x) const
   {
-    double *const       result = y.trilinos_vector()[0];
-    const double *const given  = x.trilinos_vector()[0];
+    double *const       result = y.begin();
+    const double *const given  = x.begin();
     apply_transformation(given, u_.data());
     system_.apply_stiffness(u_.data(), f_.data());
     add_springs(u_.data(), f_.data());
@@ -297,7 +297,7 @@ namespace Nodus
 
   void Condensation::condense(const BlockVector &b, Vector &rhs)
   {
-    const double *const f_b = b.block(0).trilinos_vector()[0], *const g_b = b.block(1).trilinos_vector()[0];
+    const double *const f_b = b.block(0).begin(), *const g_b = b.block(1).begin();
     particular_.assign(dim * nodes_.n_owned(), 0.);
     std::vector<Eigen::Vector3d> y(sites_.size(), Eigen::Vector3d::Zero());
     for (unsigned int k = 0; k < sites_.size(); ++k)
@@ -330,7 +330,7 @@ namespace Nodus
       apply_stiffness(multiplier_.data());
       system_.B().add_transposed_product(multiplier_.data(), f_.data());
     }
-    double *const condensed = rhs.trilinos_vector()[0];
+    double *const condensed = rhs.begin();
     apply_transposed(f_.data(), condensed);
     for (const auto &[i, diagonal] : eliminated_)
       condensed[i] = 0.;
@@ -338,9 +338,9 @@ namespace Nodus
 
   void Condensation::expand(const Vector &y, const BlockVector &b, BlockVector &x) const
   {
-    double *const u = x.block(0).trilinos_vector()[0], *const m = x.block(1).trilinos_vector()[0];
-    const double *const f_b = b.block(0).trilinos_vector()[0], *const g_b = b.block(1).trilinos_vector()[0];
-    apply_transformation(y.trilinos_vector()[0], u);
+    double *const u = x.block(0).begin(), *const m = x.block(1).begin();
+    const double *const f_b = b.block(0).begin(), *const g_b = b.block(1).begin();
+    apply_transformation(y.begin(), u);
     for (std::size_t i = 0; i < u_.size(); ++i)
       u[i] += particular_[i];
 

@@ -6,7 +6,7 @@
 #include "solve/node_block.h"
 #include "solve/saddle_point_operator.h"
 
-#include <deal.II/lac/trilinos_vector.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 #include <Eigen/Dense>
 

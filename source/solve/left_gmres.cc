@@ -93,7 +93,7 @@ namespace Nodus
       {
         std::array<Segment, 2> result;
         for (unsigned int i = 0; i < 2; ++i)
-          result[i] = {v.block(i).trilinos_vector()[0], v.block(i).locally_owned_size()};
+          result[i] = {v.block(i).begin(), v.block(i).locally_owned_size()};
         return result;
       }
 

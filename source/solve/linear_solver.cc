@@ -14,7 +14,10 @@ namespace Nodus
 
   void BlockLayout::reinit(BlockVector &v) const
   {
-    v.reinit(std::vector<dealii::IndexSet>(owned.begin(), owned.end()), communicator);
+    v.reinit(owned.size());
+    for (unsigned int b = 0; b < owned.size(); ++b)
+      v.block(b).reinit(owned[b], communicator);
+    v.collect_sizes();
   }
 
   LinearSolverParameters::Type chosen_solver(const Parameters &parameters, const DoFIndex n_displacements)

@@ -34,6 +34,7 @@ namespace Nodus
     {
       std::vector<BlockVector> solutions;
       const Report             report = solve(system, {&system.rhs}, solutions, relative_tolerance);
+      solution.reinit(solutions.front(), true); // swap() needs as many blocks
       solution.swap(solutions.front());
       return report;
     }

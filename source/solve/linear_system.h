@@ -5,7 +5,7 @@
 #include <nodus/base/types.h>
 
 #include <deal.II/base/index_set.h>
-#include <deal.II/lac/trilinos_parallel_block_vector.h>
+#include <deal.II/lac/la_parallel_block_vector.h>
 
 #include <array>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "solve/newton.h"
 
-#include <deal.II/lac/trilinos_parallel_block_vector.h>
+#include <deal.II/lac/la_parallel_block_vector.h>
 
 #include <algorithm>
 #include <cmath>

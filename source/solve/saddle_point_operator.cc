@@ -2,8 +2,6 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <Epetra_MultiVector.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -150,8 +148,8 @@ namespace Nodus
 
   void SaddlePointOperator::vmult(BlockVector &dst, const BlockVector &src) const
   {
-    const double *const u = src.block(0).trilinos_vector()[0], *const m = src.block(1).trilinos_vector()[0];
-    double *const f = dst.block(0).trilinos_vector()[0], *const g = dst.block(1).trilinos_vector()[0];
+    const double *const u = src.block(0).begin(), *const m = src.block(1).begin();
+    double *const f = dst.block(0).begin(), *const g = dst.block(1).begin();
 
     apply_stiffness(u, f);
     B_->add_transposed_product(m, f);
@@ -169,15 +167,15 @@ namespace Nodus
   BlockVector SaddlePointOperator::scaled(const BlockVector &rhs) const
   {
     BlockVector b(std::vector<dealii::IndexSet>{system_.layout->owned[0], owned_m_}, system_.layout->communicator);
-    b.block(0)                           = rhs.block(0);
-    Epetra_MultiVector       &m          = b.block(1).trilinos_vector();
-    const Epetra_MultiVector &normal     = rhs.block(1).trilinos_vector();
-    const Epetra_MultiVector &tangential = rhs.block(2).trilinos_vector();
-    for (int k = 0; k < normal.MyLength(); ++k)
+    b.block(0)                     = rhs.block(0);
+    double *const       m          = b.block(1).begin();
+    const double *const normal     = rhs.block(1).begin();
+    const double *const tangential = rhs.block(2).begin();
+    for (unsigned int k = 0; k < rhs.block(1).locally_owned_size(); ++k)
     {
-      m[0][3 * k]     = scale_[3 * k] * normal[0][k];
-      m[0][3 * k + 1] = scale_[3 * k + 1] * tangential[0][2 * k];
-      m[0][3 * k + 2] = scale_[3 * k + 2] * tangential[0][2 * k + 1];
+      m[3 * k]     = scale_[3 * k] * normal[k];
+      m[3 * k + 1] = scale_[3 * k + 1] * tangential[2 * k];
+      m[3 * k + 2] = scale_[3 * k + 2] * tangential[2 * k + 1];
     }
     return b;
   }
@@ -185,15 +183,15 @@ namespace Nodus
   void SaddlePointOperator::to_solution(const BlockVector &x, BlockVector &solution) const
   {
     system_.layout->reinit(solution);
-    solution.block(0)                    = x.block(0);
-    const Epetra_MultiVector &m          = x.block(1).trilinos_vector();
-    Epetra_MultiVector       &normal     = solution.block(1).trilinos_vector();
-    Epetra_MultiVector       &tangential = solution.block(2).trilinos_vector();
-    for (int k = 0; k < normal.MyLength(); ++k)
+    solution.block(0)              = x.block(0);
+    const double *const m          = x.block(1).begin();
+    double *const       normal     = solution.block(1).begin();
+    double *const       tangential = solution.block(2).begin();
+    for (unsigned int k = 0; k < solution.block(1).locally_owned_size(); ++k)
     {
-      normal[0][k]             = scale_[3 * k] * m[0][3 * k];
-      tangential[0][2 * k]     = scale_[3 * k + 1] * m[0][3 * k + 1];
-      tangential[0][2 * k + 1] = scale_[3 * k + 2] * m[0][3 * k + 2];
+      normal[k]             = scale_[3 * k] * m[3 * k];
+      tangential[2 * k]     = scale_[3 * k + 1] * m[3 * k + 1];
+      tangential[2 * k + 1] = scale_[3 * k + 2] * m[3 * k + 2];
     }
   }
 
@@ -231,10 +229,10 @@ namespace Nodus
 
   double SaddlePointOperator::unscaled_norm(const BlockVector &residual) const
   {
-    const Epetra_MultiVector &m   = residual.block(1).trilinos_vector();
-    double                    sum = 0.;
-    for (int i = 0; i < m.MyLength(); ++i)
-      sum += (m[0][i] / scale_[i]) * (m[0][i] / scale_[i]);
+    const Vector &m   = residual.block(1);
+    double        sum = 0.;
+    for (unsigned int i = 0; i < m.locally_owned_size(); ++i)
+      sum += (m.local_element(i) / scale_[i]) * (m.local_element(i) / scale_[i]);
     return std::sqrt(dealii::Utilities::MPI::sum(sum, system_.layout->communicator) + residual.block(0).norm_sqr());
   }
 } // namespace Nodus

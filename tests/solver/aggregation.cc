@@ -120,8 +120,7 @@ namespace
       constexpr double   omega = 0.6;
       Aggregation        coarse(K, A, modes, D_inverse, omega);
       const auto         matrix   = coarse.make_coarse_matrix(K);
-      const Epetra_Map   map      = matrix->map().dof_map();
-      const unsigned int n_coarse = map.NumMyElements();
+      const unsigned int n_coarse = dim * matrix->map().n_owned();
 
       double worst = 0.;
       for (unsigned int m = 0; m < Aggregation::n_modes; ++m)
@@ -137,7 +136,7 @@ namespace
 
       std::vector<double> z(n_coarse), A_z(n_coarse), product(n_coarse);
       for (unsigned int i = 0; i < n_coarse; ++i)
-        z[i] = std::cos(3. * (map.GID(i) + 1));
+        z[i] = std::cos(3. * (dim * matrix->map().global(i / dim) + i % dim + 1));
       std::vector<double> fine(n, 0.);
       coarse.add_prolongation(fine.data(), z.data());
       coarse.restrict_to(product.data(), apply(fine).data());
@@ -158,8 +157,8 @@ namespace
       Vector          u, v, Mu, Mv;
       for (Vector *w : {&u, &v, &Mu, &Mv})
         w->reinit(problem.layout.owned[0], MPI_COMM_WORLD);
-      std::copy_n(rough(1.).begin(), n, u.trilinos_vector()[0]);
-      std::copy_n(rough(7.).begin(), n, v.trilinos_vector()[0]);
+      std::copy_n(rough(1.).begin(), n, u.begin());
+      std::copy_n(rough(7.).begin(), n, v.begin());
       multigrid.vmult(Mu, u);
       multigrid.vmult(Mv, v);
       report("cycle is symmetric", std::abs(u * Mv - v * Mu) / std::sqrt((u * Mu) * (v * Mv)), 1e-6);

@@ -9,9 +9,9 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_q.h>
+#include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
-#include <deal.II/lac/trilinos_vector.h>
 
 #include <cmath>
 #include <functional>
@@ -159,7 +159,7 @@ namespace
     const BlockCsrMatrix &matrix;
     void                  vmult(Vector &y, const Vector &x) const
     {
-      matrix.vmult(y.trilinos_vector()[0], x.trilinos_vector()[0]);
+      matrix.vmult(y.begin(), x.begin());
     }
   };
 

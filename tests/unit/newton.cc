@@ -7,7 +7,7 @@
 #include "run/fixed_point_loop.h"
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/lac/trilinos_parallel_block_vector.h>
+#include <deal.II/lac/la_parallel_block_vector.h>
 
 #include <cmath>
 #include <iostream>
@@ -56,7 +56,7 @@ namespace
       const double     r0 = 4 - x * x - y * y, r1 = 1 - x * y, det = 2 * x * x - 2 * y * y;
       dealii::IndexSet all(2);
       all.add_range(0, 2);
-      correction.reinit(std::vector<dealii::IndexSet>{all}, MPI_COMM_WORLD);
+      correction = BlockVector(std::vector<dealii::IndexSet>{all}, MPI_COMM_WORLD);
       correction.block(0)(0) = (x * r0 - 2 * y * r1) / det;
       correction.block(0)(1) = (-y * r0 + 2 * x * r1) / det;
       from_x                 = x;

@@ -10,14 +10,24 @@
 
 namespace dealii
 {
-  namespace TrilinosWrappers
+  namespace MemorySpace
   {
-    namespace MPI
+    struct Host;
+  }
+  namespace LinearAlgebra
+  {
+    namespace distributed
     {
+      template <typename Number, typename MemorySpace>
       class Vector;
+#if DEAL_II_VERSION_GTE(9, 7, 0)
+      template <typename Number, typename MemorySpace>
+#else
+      template <typename Number>
+#endif
       class BlockVector;
-    } // namespace MPI
-  }   // namespace TrilinosWrappers
+    } // namespace distributed
+  }   // namespace LinearAlgebra
 } // namespace dealii
 
 /// Frictional contact of 3D finite-strain bodies.
@@ -28,11 +38,15 @@ namespace Nodus
 {
   constexpr unsigned int dim = 3;
 
-  using Vector      = dealii::TrilinosWrappers::MPI::Vector;
-  using BlockVector = dealii::TrilinosWrappers::MPI::BlockVector;
-  using DoFIndex    = dealii::types::global_dof_index;
-  using Point       = dealii::Point<dim>;
-  using Vector3     = dealii::Tensor<1, dim>;
+  using Vector = dealii::LinearAlgebra::distributed::Vector<double, dealii::MemorySpace::Host>;
+#if DEAL_II_VERSION_GTE(9, 7, 0)
+  using BlockVector = dealii::LinearAlgebra::distributed::BlockVector<double, dealii::MemorySpace::Host>;
+#else
+  using BlockVector = dealii::LinearAlgebra::distributed::BlockVector<double>;
+#endif
+  using DoFIndex = dealii::types::global_dof_index;
+  using Point    = dealii::Point<dim>;
+  using Vector3  = dealii::Tensor<1, dim>;
 
   /// Status of a slave node; stick and slip are both "contact" (S = 1).
   enum class ContactStatus : unsigned char

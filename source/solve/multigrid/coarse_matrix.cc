@@ -149,38 +149,4 @@ namespace Nodus
     }
     return matrix;
   }
-
-  std::unique_ptr<Epetra_CrsMatrix> to_epetra(const BlockCsrMatrix &matrix)
-  {
-    const NodeMap   &nodes = matrix.map();
-    std::vector<int> length(std::max(1U, dim * nodes.n_owned()), 0);
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-    {
-      matrix.for_row(i, [&](const unsigned int, const double *, const bool) { length[dim * i] += dim; });
-      std::fill_n(&length[dim * i], dim, length[dim * i]);
-    }
-    const Epetra_Map    rows   = nodes.dof_map();
-    auto                result = std::make_unique<Epetra_CrsMatrix>(Copy, rows, length.data(), true);
-    std::vector<int>    columns;
-    std::vector<double> values;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      for (unsigned int c = 0; c < dim; ++c)
-      {
-        columns.clear();
-        values.clear();
-        matrix.for_row(i,
-                       [&](const unsigned int j, const double *block, const bool transposed)
-                       {
-                         for (unsigned int d = 0; d < dim; ++d)
-                         {
-                           columns.push_back(dim * nodes.global(j) + d);
-                           values.push_back(block[transposed ? dim * d + c : dim * c + d]);
-                         }
-                       });
-        result->InsertGlobalValues(
-            static_cast<int>(dim * nodes.global(i) + c), columns.size(), values.data(), columns.data());
-      }
-    result->FillComplete(rows, rows);
-    return result;
-  }
 } // namespace Nodus

@@ -3,8 +3,6 @@
 
 #include "solve/block_csr_matrix.h"
 
-#include <Epetra_CrsMatrix.h>
-
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -52,9 +50,6 @@ namespace Nodus
                                                      const std::vector<DoFIndex> &starts,
                                                      const std::vector<DoFIndex> &ghosts,
                                                      MPI_Comm                     communicator);
-
-  /// For libraries. Collective.
-  std::unique_ptr<Epetra_CrsMatrix> to_epetra(const BlockCsrMatrix &matrix);
 } // namespace Nodus
 
 #endif

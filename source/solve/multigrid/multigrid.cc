@@ -1,11 +1,8 @@
 #include "solve/multigrid/multigrid.h"
 #include "parallel/wait_for_all.h"
-#include "solve/multigrid/coarse_matrix.h"
+#include "solve/multigrid/coarse_solver.h"
 
 #include <deal.II/base/mpi.h>
-
-#include <Epetra_MultiVector.h>
-#include <Teuchos_ParameterList.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +12,8 @@ namespace Nodus
 {
   namespace
   {
-    /// Unknowns of the level that is left to ML: it solves up to 2000 directly on one rank, which takes 0.1 to 0.3 s.
-    constexpr unsigned int largest_for_library = 400;
+    /// Unknowns of the level that is solved exactly.
+    constexpr unsigned int largest_coarsest = 400;
 
     unsigned int size(const BlockCsrMatrix &matrix)
     {
@@ -70,7 +67,7 @@ namespace Nodus
     std::unique_ptr<BlockCsrMatrix> matrix = add_level(K, nullptr, &A, modes, smoother_sweeps);
     smoother_sweeps *= 2; // the coarse levels cost little
     bool stalls = false;
-    while (!stalls && size(*matrix) > largest_for_library)
+    while (!stalls && size(*matrix) > largest_coarsest)
     {
       auto                           copy     = std::make_unique<ConstrainedMatrix>(*matrix);
       const ConstrainedMatrix *const A_coarse = copy.get();
@@ -79,22 +76,7 @@ namespace Nodus
       matrix                                  = std::move(next);
     }
 
-    using AMG      = dealii::TrilinosWrappers::PreconditionAMG;
-    coarse_matrix_ = to_epetra(*matrix);
-    AMG::AdditionalData data;
-    data.elliptic              = true;
-    data.smoother_sweeps       = smoother_sweeps;
-    data.aggregation_threshold = 0.;
-    Teuchos::ParameterList              parameters;
-    std::unique_ptr<Epetra_MultiVector> unused;
-    data.set_parameters(parameters, unused, *coarse_matrix_);
-    modes.resize(std::max<std::size_t>(modes.size(), 1));
-    parameters.set("PDE equations", static_cast<int>(Aggregation::n_modes));
-    parameters.set("null space: type", "pre-computed");
-    parameters.set("null space: dimension", static_cast<int>(Aggregation::n_modes));
-    parameters.set("null space: vectors", modes.data());
-    parameters.set("null space: add default vectors", false);
-    ml_.initialize(*coarse_matrix_, parameters);
+    coarsest_ = std::make_unique<CoarseSolver>(*matrix);
   }
 
   /// Takes the modes of the level and gives those of the next one, whose matrix it returns.
@@ -117,18 +99,13 @@ namespace Nodus
 
   void Multigrid::vmult(Vector &dst, const Vector &src) const
   {
-    const auto x = [&](const unsigned int l)
-    { return l == 0 ? dst.trilinos_vector()[0] : levels_[l - 1].coarse_correction.data(); };
-    const auto b = [&](const unsigned int l)
-    { return l == 0 ? src.trilinos_vector()[0] : levels_[l - 1].coarse_residual.data(); };
+    const auto x = [&](const unsigned int l) { return l == 0 ? dst.begin() : levels_[l - 1].coarse_correction.data(); };
+    const auto b = [&](const unsigned int l) { return l == 0 ? src.begin() : levels_[l - 1].coarse_residual.data(); };
     for (unsigned int l = 0; l < levels_.size(); ++l)
       levels_[l].level->pre_smooth(x(l), b(l), levels_[l].coarse_residual.data());
 
-    const Epetra_Map        &map  = coarse_matrix_->RowMap();
-    const Level             &last = levels_.back();
-    const Epetra_MultiVector residual(View, map, last.coarse_residual.data(), map.NumMyElements(), 1);
-    Epetra_MultiVector       correction(View, map, last.coarse_correction.data(), map.NumMyElements(), 1);
-    ml_.trilinos_operator().ApplyInverse(residual, correction);
+    const Level &last = levels_.back();
+    coarsest_->solve(last.coarse_residual, last.coarse_correction);
 
     for (unsigned int l = levels_.size(); l-- > 0;)
       levels_[l].level->post_smooth(x(l), b(l), levels_[l].coarse_correction.data());

@@ -2,12 +2,10 @@
 #define nodus_solve_multigrid_multigrid_h
 
 #include "solve/linear_solver.h"
+#include "solve/multigrid/coarse_solver.h"
 #include "solve/multigrid/multigrid_level.h"
 
-#include <deal.II/lac/trilinos_precondition.h>
-
-#include <Epetra_CrsMatrix.h>
-
+#include <memory>
 #include <vector>
 
 namespace Nodus
@@ -16,7 +14,8 @@ namespace Nodus
   /// the other; zero where nothing but the diagonal of @p K couples. Collective.
   std::vector<double> rigid_body_modes(const BlockCsrMatrix &K, const std::vector<Point> &node_positions);
 
-  /// Smoothed aggregation multigrid, one V cycle: levels in node blocks down to 400 unknowns, ML below (section 27).
+  /// Smoothed aggregation multigrid, one V cycle: levels in node blocks down to 400 unknowns, which are solved exactly
+  /// (section 27).
   class Multigrid
   {
   public:
@@ -44,9 +43,8 @@ namespace Nodus
                                               std::vector<double>               &modes,
                                               unsigned int                       smoother_sweeps);
 
-    std::vector<Level>                        levels_;
-    std::unique_ptr<Epetra_CrsMatrix>         coarse_matrix_; ///< of ML
-    dealii::TrilinosWrappers::PreconditionAMG ml_;
+    std::vector<Level>            levels_;
+    std::unique_ptr<CoarseSolver> coarsest_;
   };
 } // namespace Nodus
 
