@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <sstream>
 
 namespace Nodus
@@ -30,7 +31,25 @@ namespace Nodus
     using Type         = BoundaryConditionParameters::Type;
     using CellIterator = DoFHandler<dim>::active_cell_iterator;
 
-    std::unique_ptr<FunctionParser<dim>> parse(const BoundaryConditionParameters &parameters, const std::string &label)
+    /// What a program gives.
+    class ProgramFunction : public Function<dim>
+    {
+    public:
+      ProgramFunction(const std::function<double(const Point &, double, unsigned int)> &function, const unsigned int n)
+          : Function<dim>(n)
+          , function_(function)
+      {
+      }
+      double value(const Point &X, const unsigned int component) const override
+      {
+        return function_(X, this->get_time(), component);
+      }
+
+    private:
+      std::function<double(const Point &, double, unsigned int)> function_;
+    };
+
+    std::unique_ptr<Function<dim>> parse(const BoundaryConditionParameters &parameters, const std::string &label)
     {
       const std::size_t expected = parameters.type == Type::pressure ? 1 : parameters.components.size();
       if (parameters.value.size() != expected || expected == 0)
@@ -39,6 +58,8 @@ namespace Nodus
                               ? "a pressure, which takes exactly one"
                               : std::to_string(expected) + " 'Components'; write one expression for each component"));
 
+      if (parameters.function)
+        return std::make_unique<ProgramFunction>(parameters.function, expected);
       const std::map<std::string, double> constants = {{"pi", numbers::PI}};
       for (const auto &expression : parameters.value)
       {

@@ -4,6 +4,7 @@
 #include <nodus/base/types.h>
 #include <nodus/parameters/solution_parameters.h>
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -136,8 +137,12 @@ namespace Nodus
     RegionParameters          region;
     std::vector<unsigned int> components; ///< 0, 1, 2; not used by pressure
     std::vector<std::string>  value;      ///< muParser expressions of x, y, z, t: one per component, one for pressure
-    double                    active_from  = 0.; ///< acts in the increments after this time ...
-    double                    active_until = 0.; ///< ... that end at this time at the latest; 0 = the whole path
+    /// What a program sets instead of the expressions, called with reference position, time and place in value, which
+    /// keeps its length. It may follow what the program sees after an increment: what it gives changes from increment
+    /// to increment alone, and is the same on every rank.
+    std::function<double(const Point &, double, unsigned int)> function;
+    double active_from  = 0.; ///< acts in the increments after this time ...
+    double active_until = 0.; ///< ... that end at this time at the latest; 0 = the whole path
 
     /// Whether it counts for the equilibrium at time @p t.
     bool acts(const double t) const
