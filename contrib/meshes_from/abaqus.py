@@ -71,7 +71,7 @@ def _rotation(*numbers):
     if not np.isfinite(axis).all():
         raise ValueError
     cross = np.cross(np.eye(3), axis)
-    return np.cos(angle) * np.eye(3) - np.sin(angle) * cross + (1 - np.cos(angle)) * np.outer(axis, axis), a
+    return np.cos(angle) * np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * np.outer(axis, axis), a
 
 
 class _Lookup:

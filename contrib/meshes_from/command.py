@@ -97,8 +97,9 @@ def _report(options, mesh, hexahedra, quality):
         print(f"  at {hexahedra.apart} nodes straight sides are beside curved ones, and have been curved")
     for note in mesh.notes:
         print(f"  warning: {note}")
-    curved = max(len(block.kind.nodes) > 8 for block in mesh.blocks)
-    sides = "curved sides are kept" if hexahedra.order == 2 else "curved sides are straight" if curved else ""
+    second = any(len(block.kind.nodes) > len(block.kind.shape.corners) for block in mesh.blocks)
+    sides = ("curved sides are kept" if hexahedra.order == 2 else "" if not second else "curved sides have become straight"
+             if options.straight else "all sides are straight, so that 8 nodes do")
     print(f"{options.output}: {len(hexahedra.cells)} hexahedra of {(hexahedra.order + 1)**3} nodes, {len(hexahedra.points)} nodes"
           + (f"; {sides}" if sides else ""))
     print(f"  scaled Jacobian: {quality[0]:.3g} at least ({quality[1]}), {quality[2]:.3g} in the median")

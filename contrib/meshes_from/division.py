@@ -47,7 +47,7 @@ class Hexahedra:
 
     def __init__(self, mesh, refine=False, straight=False):
         self.mesh = mesh
-        self.order = 1 if straight else max(ORDER[block.name] for block in mesh.blocks)
+        self.order = 2 if not straight and any(_is_curved(block, mesh.points) for block in mesh.blocks) else 1
         self.halved = _halved(mesh, refine)
         self._build()
         self.mirrored = self._turn()
@@ -128,6 +128,16 @@ class Hexahedra:
         first = np.einsum("pa,qb,fbac->fpqc", slopes, values, nodes)
         second = np.einsum("pa,qb,fbac->fpqc", values, slopes, nodes)
         return np.einsum("p,q,fpq->f", weights / 2, weights / 2, np.linalg.norm(np.cross(first, second), axis=-1))
+
+
+def _is_curved(block, points):
+    """Whether middles of sides are not where the corners have them, by more than the digits of a file."""
+    if ORDER[block.name] == 1 or not len(block.nodes):
+        return False
+    positions, n_corners = points[block.nodes], len(block.kind.shape.corners)
+    straight = np.einsum("pn,enc->epc", FIRST_ORDER[block.kind.shape].values(block.kind.nodes), positions[:, :n_corners])
+    size = np.ptp(positions, axis=1).max(axis=1)
+    return bool((np.abs(positions - straight).max(axis=(1, 2)) > 1e-5 * size).any())
 
 
 def _lagrange(nodes, points, derivative=False):
