@@ -104,17 +104,19 @@ class _Content:
         for _ in range(n_blocks):
             count = int(self.lines[at].split()[3])
             labels.append(self._numbers(at + 1, count, np.int64))
-            points.append(self._numbers(at + 1 + count, count).reshape(count, -1)[:, :3])
+            if count:  # gmsh writes empty blocks
+                points.append(self._numbers(at + 1 + count, count).reshape(count, -1)[:, :3])
             at += 1 + 2 * count
-        self.labels, self.points = np.concatenate(labels), np.concatenate(points)
+        self.labels, self.points = np.concatenate(labels), np.concatenate(points) if points else self.points
 
     def _elements(self, at, end):
         if self.version != "2.2":
             n_blocks, at = int(self.lines[at].split()[0]), at + 1
             for _ in range(n_blocks):
                 dimension, entity, type_, count = (int(word) for word in self.lines[at].split())
-                rows = self._numbers(at + 1, count, np.int64).reshape(count, -1)
-                self.elements.append((type_, self.entities.get((dimension, entity), ()), rows))
+                if count:
+                    rows = self._numbers(at + 1, count, np.int64).reshape(count, -1)
+                    self.elements.append((type_, self.entities.get((dimension, entity), ()), rows))
                 at += 1 + count
             return
         groups = {}

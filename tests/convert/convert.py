@@ -278,7 +278,8 @@ def test_gmsh():
     check("gmsh, volumes", str(result.volumes), "{'wedge': (4, 3, 0.5), 'tetrahedron': (5, 4, 0.166667)}")
     check("gmsh, surfaces", str(result.surfaces), "{'base of it': (17, 3, 0.5), '(none)': (0, 15, 5.28024)}")
     result.check_fit("gmsh")
-    again = Result("again", open(result.file, encoding="utf-8").read(), ending=".msh")
+    text = open(result.file, encoding="utf-8").read()
+    again = Result("again", text.replace("$Nodes\n1 ", "$Nodes\n2 ").replace("\n3 1 0 ", "\n2 1 0 0\n3 1 0 ", 1), ending=".msh")
     check("gmsh 4.1, what was written is read", str((again.volumes, again.surfaces)), str((result.volumes, result.surfaces)))
 
 
