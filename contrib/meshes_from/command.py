@@ -39,8 +39,6 @@ def _arguments(arguments):
 
 
 def _read(path):
-    if not os.path.isfile(path):
-        raise MeshError(f"{path}: there is no such file")
     ending = os.path.splitext(path)[1].lower()
     return {".inp": read_abaqus, ".msh": read_gmsh}.get(ending, read_other)(path)
 
@@ -61,9 +59,13 @@ def convert(options):
     """Does it all; prints what there is. @raises MeshError"""
     if not options.output.lower().endswith(".msh"):
         raise MeshError(f"{options.output}: the name of the result must end in .msh")
+    if not os.path.isfile(options.input):
+        raise MeshError(f"{options.input}: there is no such file")
     folder = os.path.dirname(options.output)
     if folder and not os.path.isdir(folder):
         raise MeshError(f"{options.output}: there is no folder {folder}")
+    if os.path.exists(options.output) and os.path.samefile(options.input, options.output):
+        raise MeshError(f"{options.output}: is the input itself; give the result another name")
     mesh = _read(options.input)
     _leave_out(mesh, options)
     volumes = volume_groups(mesh)

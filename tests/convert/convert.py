@@ -16,83 +16,7 @@ sys.dont_write_bytecode = True  # no __pycache__ in the sources
 import numpy as np
 
 import decks
-
-SOURCE = os.path.abspath(sys.argv[1])
-TOOL = os.path.join(SOURCE, "contrib", "convert")
-failures = []
-
-
-def check(what, value, reference, tolerance=0.):
-    """Prints a number or text beside what it should be."""
-    if isinstance(value, str) or value is None:
-        good = value == reference
-        print(f"{what}: {value}" + ("" if good else f"   NO, should be {reference}"))
-    else:
-        good = abs(value - reference) <= tolerance * abs(reference)
-        print(f"{what}: {value:.8g} for {reference:.8g}" + (f" within {tolerance:g}" if tolerance else "")
-              + ("" if good else "   NO"))
-    if not good:
-        failures.append(what)
-
-
-class Result:
-    """What the tool has printed and written: `volumes` and `surfaces` are name -> (id, number, measure)."""
-
-    def __init__(self, name, text, *options, ending=".inp"):
-        with open(name + ending, "w", encoding="utf-8") as file:
-            file.write(text)
-        done = subprocess.run([TOOL, name + ending, name + ".msh" if ending != ".msh" else name + "_out.msh", *options],
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
-        self.file, self.code, self.error, self.log = name + ".msh", done.returncode, done.stderr.strip(), done.stdout
-        if ending == ".msh":
-            self.file = name + "_out.msh"
-        parts = re.split(r"\n *(?:Volume|Boundary) id .*\n", self.log + "\n")
-        self.volumes, self.surfaces = ([self._rows(part) for part in parts[1:]] + [{}, {}])[:2]
-
-    @staticmethod
-    def _rows(text):
-        rows = {}
-        for line in text.splitlines():
-            found = re.fullmatch(r" *(\d+)  (.*?) +(\d+)  +([\d.e+-]+)  .*", line)
-            if found:
-                rows[found.group(2)] = (int(found.group(1)), int(found.group(3)), float(found.group(4)))
-        return rows
-
-    def mesh(self):
-        """(points, [(dimension, rows of nodes from 0)]) of the file."""
-        with open(self.file, encoding="utf-8") as file:
-            lines = file.read().splitlines()
-        at = lines.index("$Nodes") + 3
-        n = int(lines[at - 1].split()[3])
-        points = np.array([line.split() for line in lines[at + n:at + 2 * n]], float)
-        at, blocks = lines.index("$Elements") + 2, []
-        while lines[at] != "$EndElements":
-            dimension, _, _, count = map(int, lines[at].split())
-            blocks.append((dimension, np.array([line.split()[1:] for line in lines[at + 1:at + 1 + count]], int) - 1))
-            at += 1 + count
-        return points, blocks
-
-    def outer_faces(self):
-        """Number of the faces of one hexahedron: more than the surfaces have where cells do not fit together."""
-        faces = {}
-        for dimension, rows in self.mesh()[1]:
-            for cell in rows if dimension == 3 else ():
-                for face in ("0123", "4567", "0154", "1265", "2376", "3047"):
-                    key = tuple(sorted(cell[[int(c) for c in face]]))
-                    faces[key] = faces.get(key, 0) + 1
-        return sum(count == 1 for count in faces.values())
-
-    def check_fit(self, what):
-        check(f"{what}, faces of one cell", self.outer_faces(), sum(row[1] for row in self.surfaces.values()))
-
-
-def refused(what, expected, text, *options, ending=".inp"):
-    """One message, exit code 1, nothing written."""
-    result = Result("wrong", text, *options, ending=ending)
-    check(what, result.error, "convert: " + expected)
-    left = sorted(name for name in os.listdir(".") if name.startswith("wrong") and name != "wrong" + ending)
-    check(f"{what}, exit code {result.code}, files", str((result.code, left)), "(1, [])")
-    os.remove("wrong" + ending)
+from harness import SOURCE, TOOL, Result, check, failures, refused
 
 
 def solid(kind, deck, place, more=""):
@@ -283,6 +207,16 @@ def test_gmsh():
     check("gmsh 4.1, what was written is read", str((again.volumes, again.surfaces)), str((result.volumes, result.surfaces)))
 
 
+def test_cylinders():
+    """27 and 20 nodes in gmsh's order, both versions of the format: the cylinders that nodus itself is tested with."""
+    for name in ("cylinder_27_2", "cylinder_20_2", "cylinder_27_2_format_22"):
+        with open(os.path.join(SOURCE, "tests", "meshes", name + ".msh"), encoding="utf-8") as file:
+            result = Result("cylinder", file.read(), ending=".msh")
+        check(f"{name}, volume", result.volumes["physical volume 1"][2], np.pi, 1e-3)
+        check(f"{name}, hull", result.surfaces["physical surface 3"][2], 2 * np.pi, 1e-3)
+        result.check_fit(name)
+
+
 def test_overlaps():
     """A face has one id."""
     cube = solid("C3D8", decks.box("C3D8", 2), straight)
@@ -335,6 +269,21 @@ def test_refusals():
     check("missing file", f"{missing.returncode} {missing.stderr.strip()}", "1 convert: nowhere.inp: there is no such file")
 
 
+def test_other_formats():
+    """meshio is needed for them alone, and missed in one sentence."""
+    os.mkdir("hidden")
+    for name, text in (("hidden/meshio.py", "raise ImportError\n"), ("part.vtu", ""), ("part.msh", "kept")):
+        with open(name, "w", encoding="utf-8") as file:
+            file.write(text)
+    for given, expected in (("part.vtu", "part.vtu: formats other than .inp and .msh are read by meshio; install it (apt-get "
+                             "install python3-meshio, or pip install meshio)"),
+                            ("part.msh", "part.msh: is the input itself; give the result another name")):
+        done = subprocess.run([TOOL, given, "part.msh"], stderr=subprocess.PIPE, text=True, check=False,
+                              env={**os.environ, "PYTHONPATH": "hidden"})
+        check(given, f"{done.returncode} {done.stderr.strip()}", "1 convert: " + expected)
+    check("file that was there before", open("part.msh", encoding="utf-8").read(), "kept")
+
+
 CASE = """subsection Body 1
   set Mesh file = {file}
   subsection Material
@@ -383,7 +332,8 @@ def main():
     nodus = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else None
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        for test in (test_boxes, test_kinds, test_round, test_mixtures, test_assembly, test_gmsh, test_overlaps, test_refusals):
+        for test in (test_boxes, test_kinds, test_round, test_mixtures, test_assembly, test_gmsh, test_cylinders, test_overlaps,
+                     test_refusals, test_other_formats):
             test()
         if nodus:
             test_nodus(nodus)
