@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Forces of a CalculiX deck of two solids, beside those of nodus on the mesh that contrib/convert makes of it. Writes calculix.md.
 
-A cube is pressed by 0.02 on a block twice as wide and shifted by 0.006 with friction 0.3, linear elastic, E = 1000, nu = 0.3.
+A cube is pressed by 0.02 on a block twice as wide and shifted by 0.02 with friction 0.3, linear elastic, E = 1000, nu = 0.3.
 The deck has sets of nodes and surfaces of element faces, and CalculiX (`ccx`, Debian: calculix-ccx) runs it as it is.
 """
 
@@ -20,7 +20,7 @@ from meshes import common  # noqa: E402
 from meshes_from.gmsh_in import read_gmsh  # noqa: E402
 from meshes_from.mesh import Faces  # noqa: E402
 
-PRESS, SHIFT, FRICTION = 0.02, 0.006, 0.3
+PRESS, SHIFT, FRICTION = 0.02, 0.02, 0.3
 
 TETRAHEDRA = """SetFactory("OpenCASCADE");
 Box(1) = {{0.5, 0.5, 0, 1, 1, 1}}; Box(2) = {{0, 0, -1, 2, 2, 1}};
