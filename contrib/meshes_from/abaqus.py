@@ -106,7 +106,7 @@ def read_abaqus(path):
             skin_nodes.append(np.pad(nodes + offset, ((0, 0), (0, 4 - nodes.shape[1])), constant_values=-1))
         for name, count in scope.skipped.items():
             deck.skipped[name] = deck.skipped.get(name, 0) + count
-    if not blocks:
+    if not any(len(labels) for found in blocks.values() for labels, _ in found):
         raise MeshError(f"{path}: there are no solid elements"
                         + (", or no instance of the parts" if deck.parts and not deck.root.instances else ""))
     find_node = _Lookup(np.concatenate(node_labels))

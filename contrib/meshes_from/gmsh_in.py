@@ -62,18 +62,21 @@ class _Content:
             raise MeshError(f"{path}: is no gmsh file, it has no $MeshFormat")
 
     def _read(self, section, at, end):
-        if section == "$PhysicalNames":
-            for line in self.lines[at + 1:end]:
-                dimension, number, name = line.split(None, 2)
-                self.names[int(dimension), int(number)] = name.strip().strip('"')
-        elif section == "$MeshFormat":
-            self.version = self.lines[at].split()[0]
-        reader = {"$Entities": self._entities, "$Nodes": self._nodes, "$Elements": self._elements}.get(section)
+        reader = {"$MeshFormat": self._format, "$PhysicalNames": self._names, "$Entities": self._entities,
+                  "$Nodes": self._nodes, "$Elements": self._elements}.get(section)
         if reader:
             try:
                 reader(at, end)
             except (ValueError, IndexError, DeprecationWarning):
                 raise MeshError(f"{self.path}: section {section} cannot be read; write it again with gmsh") from None
+
+    def _format(self, at, end):
+        self.version = self.lines[at].split()[0]
+
+    def _names(self, at, end):
+        for line in self.lines[at + 1:end]:
+            dimension, number, name = line.split(None, 2)
+            self.names[int(dimension), int(number)] = name.strip().strip('"')
 
     def _numbers(self, at, n, kind=float):
         """The next n lines as one row of numbers."""
@@ -133,7 +136,7 @@ def _as_text(path, folder):
     """The path itself, or that of the file as gmsh 4.1 text, which gmsh makes of binary ones and other versions."""
     with open(path, "rb") as file:
         start = file.read(200).split()
-    if not start or start[0] != b"$MeshFormat" or (start[1] in (b"2.2", b"4.1") and start[2] == b"0"):
+    if len(start) < 3 or start[0] != b"$MeshFormat" or (start[1] in (b"2.2", b"4.1") and start[2] == b"0"):
         return path
     if not shutil.which("gmsh"):
         raise MeshError(f"{path}: is binary or of a version that is not read; install gmsh, which converts it, or save with "
@@ -161,6 +164,9 @@ def read_gmsh(path):
         if type_ in (7, 14, 19):
             raise MeshError(f"{path}: element {rows[0, 0]} is a pyramid, which cannot be divided into hexahedra; mesh this "
                             "place with tetrahedra, wedges or hexahedra")
+        if rows.shape[1] != N_NODES[type_] + 1:
+            raise MeshError(f"{path}: element {rows[0, 0]} has {rows.shape[1] - 1} nodes, those of gmsh type {type_} have "
+                            f"{N_NODES[type_]}; write it again with gmsh")
         if type_ not in SOLIDS and type_ not in SKINS:
             continue
         labels, nodes = rows[:, 0], _positions(content, order, rows)
