@@ -160,7 +160,8 @@ def _note_missing(mesh, what, labels, missing, passed_over):
         mesh.notes.append(f"{what} is empty")
     elif missing.any() and not any(name.startswith("*ELEMENT") for name in passed_over):
         kind = what.split()[0]
-        mesh.notes.append(f"{what} names {missing.sum()} {kind}s that are not there, the first {labels[missing][0] % Mesh.INSTANCE}")
+        mesh.notes.append(f"{what} names {missing.sum()} {kind}s that are not there, the first "
+                          f"{labels[missing][0] % Mesh.INSTANCE}")
 
 
 def _numbers(scope, kind, text, face, keyword, line):
@@ -174,8 +175,8 @@ def _surface(mesh, scope, surface, find_element, offset):
         _, face, keyword, line = entry
         elements = find_element(_numbers(scope, "ELSET", *entry) + offset)
         if (elements < 0).any():
-            mesh.notes.append(f"surface {surface.name}: {(elements < 0).sum()} elements ({keyword.where(line)}) are no solids that "
-                              "are there, left out")
+            mesh.notes.append(f"surface {surface.name}: {(elements < 0).sum()} elements ({keyword.where(line)}) are no solids "
+                              "that are there, left out")
         if face is not None and not (len(face) == 2 and face[0] == "S" and face[1] in "123456"):
             mesh.notes.append(f"surface {surface.name}: side {face} ({keyword.where(line)}) is none of a solid, left out")
             continue

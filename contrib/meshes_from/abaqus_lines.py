@@ -28,6 +28,7 @@ class Keyword:
         return f"{file}:{number}"
 
     def get(self, parameter, default=None):
+        """Value of a parameter, "" where it has none."""
         return self.parameters.get(parameter, default)
 
     def need(self, parameter):

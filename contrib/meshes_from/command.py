@@ -102,8 +102,8 @@ def _report(options, mesh, hexahedra, quality):
     second = any(len(block.kind.nodes) > len(block.kind.shape.corners) for block in mesh.blocks)
     sides = ("curved sides are kept" if hexahedra.order == 2 else "" if not second else "curved sides have become straight"
              if options.straight else "all sides are straight, so that 8 nodes do")
-    print(f"{options.output}: {len(hexahedra.cells)} hexahedra of {(hexahedra.order + 1)**3} nodes, {len(hexahedra.points)} nodes"
-          + (f"; {sides}" if sides else ""))
+    print(f"{options.output}: {len(hexahedra.cells)} hexahedra of {(hexahedra.order + 1)**3} nodes, "
+          f"{len(hexahedra.points)} nodes" + (f"; {sides}" if sides else ""))
     print(f"  scaled Jacobian: {quality[0]:.3g} at least ({quality[1]}), {quality[2]:.3g} in the median")
 
 
@@ -112,7 +112,8 @@ def _tables(hexahedra, volumes, surfaces, of_face, rest):
     count = np.bincount(hexahedra.parent, minlength=hexahedra.mesh.n_elements)
     rows = [("Volume id", "name", "cells", "volume", "from")]
     for group in volumes:
-        rows.append((group.id, " = ".join(group.names), count[group.members].sum(), f"{volume[group.members].sum():.6g}", group.source))
+        rows.append((group.id, " = ".join(group.names), count[group.members].sum(), f"{volume[group.members].sum():.6g}",
+                     group.source))
     _print(rows)
     rows = [("Boundary id", "name", "faces", "area", "from")]
     for group, lattices in zip(surfaces, of_face):

@@ -13,6 +13,7 @@ class Group:
 
     @property
     def name(self):
+        """The first one."""
         return self.names[0]
 
 
@@ -44,8 +45,8 @@ def surface_groups(mesh, overlap="refuse"):
             mesh.notes.append(f"surface {name}: {(found < 0).sum()} of {len(found)} faces belong to no solid element, left out")
         inside = (faces.count[found[found >= 0]] > 1).sum()
         if inside:
-            mesh.notes.append(f"surface {name}: {inside} of {len(found)} faces are between elements; nodus has these only where "
-                              "the elements are of two bodies")
+            mesh.notes.append(f"surface {name}: {inside} of {len(found)} faces are between elements; nodus has these only "
+                              "where the elements are of two bodies")
         groups.append(Group(name, found[found >= 0], "surface"))
     wholes = [np.unique(np.concatenate([np.unique(b.nodes) for b in mesh.blocks]))] + [
         _nodes(mesh, elements) for elements in mesh.element_sets.values() if len(elements)]
@@ -89,7 +90,8 @@ def _apart(mesh, groups, n_faces, overlap):
         return groups
     pairs = [(len(np.intersect1d(a.members, b.members)), a.name, b.name) for i, a in enumerate(groups) for b in groups[:i]]
     pairs = sorted((pair for pair in pairs if pair[0]), key=lambda pair: -pair[0])
-    text = (f"{len(several)} face{'s are' if len(several) > 1 else ' is'} in more than one surface: " + ", ".join(f"{b} and {a} share {n}" for n, a, b in pairs[:6])
+    verb = "faces are" if len(several) > 1 else "face is"
+    text = (f"{len(several)} {verb} in more than one surface: " + ", ".join(f"{b} and {a} share {n}" for n, a, b in pairs[:6])
             + (", ..." if len(pairs) > 6 else ""))
     if overlap == "refuse":
         raise MeshError(f"{mesh.file}: {text}; a face of nodus has one boundary id: --pieces gives ids to the parts, --first "

@@ -33,10 +33,12 @@ class Mesh:
 
     @property
     def n_elements(self):
+        """Of all blocks."""
         return sum(len(block.nodes) for block in self.blocks)
 
     @property
     def labels(self):
+        """Numbers of all elements in the file."""
         return np.concatenate([block.labels for block in self.blocks])
 
     def starts(self):

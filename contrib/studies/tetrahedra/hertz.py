@@ -20,7 +20,6 @@ CASE = os.path.join(common.ROOT, "prm", "hertz.prm")
 R, APPROACH, E_STAR = 8.0, 0.004, 2000 / (2 * (1 - 0.3**2))
 A = np.sqrt(R * APPROACH)
 FORCE, P0 = 4 / 3 * E_STAR * np.sqrt(R) * APPROACH**1.5 / 4, 2 * E_STAR * A / (np.pi * R)
-MERGED = {f"{loop} loop/Mode": "newton" for loop in ("Geometry", "Threshold", "Status")}
 
 MEAN = {f"Body {b}/Volumetric treatment": "mean dilatation" for b in (1, 2)}
 
@@ -31,10 +30,13 @@ Box(3) = {{0, 0, 0, 8, 8, 8}};
 BooleanIntersection(4) = {{ Volume{{1}}; Delete; }}{{ Volume{{3}}; Delete; }};
 Box(5) = {{0, 0, -16, 16, 16, 16}};
 e = 1e-3;
-x1() = Surface In BoundingBox{{-e, -e, -e, e, 8 + e, 8 + e}};      y1() = Surface In BoundingBox{{-e, -e, -e, 8 + e, e, 8 + e}};
+x1() = Surface In BoundingBox{{-e, -e, -e, e, 8 + e, 8 + e}};
+y1() = Surface In BoundingBox{{-e, -e, -e, 8 + e, e, 8 + e}};
 t1() = Surface In BoundingBox{{-e, -e, 8 - e, 8 + e, 8 + e, 8 + e}};
-x2() = Surface In BoundingBox{{-e, -e, -16 - e, e, 16 + e, e}};    y2() = Surface In BoundingBox{{-e, -e, -16 - e, 16 + e, e, e}};
-b2() = Surface In BoundingBox{{-e, -e, -16 - e, 17, 17, -16 + e}}; t2() = Surface In BoundingBox{{-e, -e, -e, 17, 17, e}};
+x2() = Surface In BoundingBox{{-e, -e, -16 - e, e, 16 + e, e}};
+y2() = Surface In BoundingBox{{-e, -e, -16 - e, 16 + e, e, e}};
+b2() = Surface In BoundingBox{{-e, -e, -16 - e, 17, 17, -16 + e}};
+t2() = Surface In BoundingBox{{-e, -e, -e, 17, 17, e}};
 all() = Boundary{{ Volume{{4}}; }};
 curved() = all(); curved() -= x1(); curved() -= y1(); curved() -= t1();
 Physical Volume("sphere", 1) = {{4}}; Physical Volume("block", 2) = {{5}};
@@ -51,7 +53,7 @@ Mesh.MeshSizeExtendFromBoundary = 0; Mesh.MeshSizeFromPoints = 0; Mesh.HighOrder
 
 def measure(name, keys):
     """A row of the table."""
-    run = common.run(CASE, "tetrahedra/runs/hertz_" + name.replace(" ", "_"), {**MERGED, **keys})
+    run = common.run(CASE, "tetrahedra/runs/hertz_" + name.replace(" ", "_"), {**meshes.MERGED, **keys})
     if not run.converged:
         return [meshes.unknowns(run.log), "no solution", "", "", "", f"{run.cpu:.0f}"]
     contact = run.contact()[-1]
