@@ -1,10 +1,10 @@
 #include "bulk/boundary_conditions.h"
 #include "base/deal_ii_versions.h"
+#include "bulk/condition_value.h"
 #include "bulk/rigid_displacement.h"
 #include "parallel/throw_everywhere.h"
 #include "parameters/expression.h"
 
-#include <deal.II/base/function_parser.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe.h>
 #include <deal.II/lac/la_parallel_vector.h>
@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <sstream>
 
 namespace Nodus
@@ -30,48 +29,6 @@ namespace Nodus
   {
     using Type         = BoundaryConditionParameters::Type;
     using CellIterator = DoFHandler<dim>::active_cell_iterator;
-
-    /// What a program gives.
-    class ProgramFunction : public Function<dim>
-    {
-    public:
-      ProgramFunction(const std::function<double(const Point &, double, unsigned int)> &function, const unsigned int n)
-          : Function<dim>(n)
-          , function_(function)
-      {
-      }
-      double value(const Point &X, const unsigned int component) const override
-      {
-        return function_(X, this->get_time(), component);
-      }
-
-    private:
-      std::function<double(const Point &, double, unsigned int)> function_;
-    };
-
-    std::unique_ptr<Function<dim>> parse(const BoundaryConditionParameters &parameters, const std::string &label)
-    {
-      const std::size_t expected = parameters.type == Type::pressure ? 1 : parameters.components.size();
-      if (parameters.value.size() != expected || expected == 0)
-        throw InputError(label + ": " + std::to_string(parameters.value.size()) + " expressions in 'Value' for " +
-                         (parameters.type == Type::pressure
-                              ? "a pressure, which takes exactly one"
-                              : std::to_string(expected) + " 'Components'; write one expression for each component"));
-
-      if (parameters.function)
-        return std::make_unique<ProgramFunction>(parameters.function, expected);
-      const std::map<std::string, double> constants = {{"pi", numbers::PI}};
-      for (const auto &expression : parameters.value)
-      {
-        const std::string complaint = expression_complaint(expression, "x,y,z,t");
-        if (!complaint.empty())
-          throw InputError(label + ": 'Value' = '" + expression + "' cannot be evaluated (" + complaint +
-                           "); write an expression of x, y, z, t");
-      }
-      auto function = std::make_unique<FunctionParser<dim>>(expected);
-      function->initialize("x,y,z,t", parameters.value, constants, true);
-      return function;
-    }
 
     std::string describe(const RegionParameters &region)
     {
@@ -147,7 +104,7 @@ namespace Nodus
       , hanging_(dof_handler)
   {
     for (unsigned int n = 0; n < parameters_.size(); ++n)
-      functions_.push_back(parse(parameters_[n], label(n)));
+      functions_.push_back(make_condition_value(parameters_[n], label(n)));
     driven_.assign(bodies.size(), false);
     for (unsigned int b = 0; b < body_parameters.size(); ++b)
       if (body_parameters[b].rigid)
