@@ -1,5 +1,4 @@
 #include "bulk/nodal_stress.h"
-#include "base/deal_ii_versions.h"
 #include "mesh/hanging_nodes.h"
 
 #include <deal.II/base/quadrature_lib.h>
@@ -24,22 +23,20 @@ namespace Nodus
                            const SolidAssembler  &solid,
                            const Vector          &u)
   {
-    const auto       &fe           = dof_handler.get_fe();
-    const auto       &owned        = dof_handler.locally_owned_dofs();
-    const MPI_Comm    communicator = communicator_of(dof_handler);
+    const auto       &fe    = dof_handler.get_fe();
+    const auto       &owned = dof_handler.locally_owned_dofs();
     const QGauss<dim> quadrature(fe.degree + 1);
     FEValues<dim>     fe_values(mapping, fe, quadrature, update_values);
     const bool        plastic = solid.has_history();
 
-    const IndexSet                  relevant      = DoFTools::extract_locally_relevant_dofs(dof_handler);
     const AffineConstraints<double> hanging_nodes = hanging_constraints(dof_handler);
 
-    Vector              mass = sums_over_cells(dof_handler, hanging_nodes);
-    std::vector<Vector> nodal(plastic ? 3 : 2, mass);
+    Vector mass = sums_over_cells(dof_handler, hanging_nodes);
+    values_.assign(plastic ? 3 : 2, mass);
 
     const unsigned int                  n_dofs = fe.n_dofs_per_cell();
     std::vector<DoFIndex>               dofs(n_dofs);
-    std::vector<dealii::Vector<double>> cell_values(nodal.size());
+    std::vector<dealii::Vector<double>> cell_values(values_.size());
     dealii::Vector<double>              cell_mass(n_dofs);
 
     solid.visit(
@@ -63,22 +60,18 @@ namespace Nodus
             }
           cell->get_dof_indices(dofs);
           hanging_nodes.distribute_local_to_global(cell_mass, dofs, mass);
-          for (unsigned int part = 0; part < nodal.size(); ++part)
-            hanging_nodes.distribute_local_to_global(cell_values[part], dofs, nodal[part]);
+          for (unsigned int part = 0; part < values_.size(); ++part)
+            hanging_nodes.distribute_local_to_global(cell_values[part], dofs, values_[part]);
         });
 
     mass.compress(VectorOperation::add);
-    values_.resize(nodal.size());
-    for (unsigned int part = 0; part < nodal.size(); ++part)
+    for (unsigned int part = 0; part < values_.size(); ++part)
     {
-      nodal[part].compress(VectorOperation::add);
+      values_[part].compress(VectorOperation::add);
       for (const auto i : owned)
         if (!hanging_nodes.is_constrained(i))
-          nodal[part](i) /= mass(i);
-      nodal[part].compress(VectorOperation::insert);
-      hanging_nodes.distribute(nodal[part]);
-      values_[part].reinit(owned, relevant, communicator);
-      values_[part] = nodal[part];
+          values_[part](i) /= mass(i);
+      hanging_nodes.distribute(values_[part]);
       values_[part].update_ghost_values();
     }
   }

@@ -1,5 +1,4 @@
 #include "bulk/viscous_stabilisation.h"
-#include "base/deal_ii_versions.h"
 #include "mesh/hanging_nodes.h"
 
 #include <deal.II/base/quadrature_lib.h>

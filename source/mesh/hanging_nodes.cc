@@ -106,10 +106,14 @@ namespace Nodus
   Vector sums_over_cells(const dealii::DoFHandler<dim>           &dof_handler,
                          const dealii::AffineConstraints<double> &constraints)
   {
-    dealii::IndexSet ghosts = dealii::DoFTools::extract_locally_relevant_dofs(dof_handler);
+    dealii::IndexSet      ghosts = dealii::DoFTools::extract_locally_relevant_dofs(dof_handler);
+    std::vector<DoFIndex> beyond; // added all at once: one by one they would be sorted in each time
     for (const auto &line : constraints.get_lines())
       for (const auto &[dof, weight] : line.entries)
-        ghosts.add_index(dof);
+        if (!ghosts.is_element(dof))
+          beyond.push_back(dof);
+    std::sort(beyond.begin(), beyond.end());
+    ghosts.add_indices(beyond.begin(), beyond.end());
     return Vector(dof_handler.locally_owned_dofs(), ghosts, communicator_of(dof_handler));
   }
 } // namespace Nodus
