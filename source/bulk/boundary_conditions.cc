@@ -32,14 +32,8 @@ namespace Nodus
 
     std::string describe(const RegionParameters &region)
     {
-      std::string text = region.body == 0 ? "any body" : "body " + std::to_string(region.body);
-      if (!region.boundary_ids.empty())
-      {
-        text += ", boundary ids ";
-        for (unsigned int i = 0; i < region.boundary_ids.size(); ++i)
-          text += (i > 0 ? ", " : "") + std::to_string(region.boundary_ids[i]);
-      }
-      return text;
+      const std::string text = region.body == 0 ? "any body" : "body " + std::to_string(region.body);
+      return text + (region.has_ids() ? ", boundary ids " + region.ids_text() : "");
     }
 
     /// Throws, everywhere, for the first condition of which no rank found a @p what.
@@ -175,7 +169,7 @@ namespace Nodus
         const bool       on_cells = parameters_[n].type == Type::body_force;
         RegionParameters where    = parameters_[n].region;
         if (on_cells)
-          where.boundary_ids.clear();
+          where = {where.body, {}, where.where};
         Load load{&parameters_[n], label(n), Region(where, bodies_, label(n)), functions_[n].get()};
         for (const auto &cell : dof_handler_.active_cell_iterators())
           if (cell->is_locally_owned())

@@ -62,9 +62,7 @@ namespace Nodus
           n_ranks > 1 ? cells_at_boundary(mesh) : std::vector<unsigned int>(); // needed to divide alone
       for (unsigned int q = 0; q < cell_of.size(); ++q)
         for (const RegionParameters &slave : slaves)
-          if (mesh.cells[cell_of[q]].material_id + 1 == slave.body &&
-              std::find(slave.boundary_ids.begin(), slave.boundary_ids.end(), quads[q].boundary_id) !=
-                  slave.boundary_ids.end())
+          if (slave.takes(mesh.cells[cell_of[q]].material_id + 1, quads[q].boundary_id))
             ++slave_faces[cell_of[q]];
       return divide(mesh, slave_faces, Bodies::cell_weight, Bodies::slave_face_weight, n_ranks);
     }

@@ -93,6 +93,11 @@ namespace Nodus
     {
       return boundary_ids_[index];
     }
+    /// Names that the mesh file of body @p index has for its physical surfaces, by boundary id.
+    const std::map<unsigned int, std::string> &boundary_names(const unsigned int index) const
+    {
+      return boundary_names_[index];
+    }
     /// Axis-aligned box of body @p index in the reference configuration.
     const dealii::BoundingBox<dim> &bounding_box(const unsigned int index) const
     {
@@ -109,6 +114,7 @@ namespace Nodus
     std::vector<std::string>                                 names_;
     std::vector<bool>                                        has_mesh_;
     std::vector<std::set<dealii::types::boundary_id>>        boundary_ids_;
+    std::vector<std::map<unsigned int, std::string>>         boundary_names_;
     std::vector<dealii::BoundingBox<dim>>                    boxes_;
 
     using Manifolds = std::map<dealii::types::manifold_id, std::unique_ptr<dealii::Manifold<dim>>>;

@@ -15,12 +15,14 @@ namespace Nodus
   {
     using Face = GmshContent::Face;
 
-    std::string list(const std::set<int> &ids)
+    using Names = std::map<unsigned int, std::string>;
+
+    std::string list(const std::set<int> &ids, const Names &names)
     {
-      std::ostringstream text;
+      std::string text;
       for (const int id : ids)
-        text << (text.tellp() > 0 ? ", " : "") << id;
-      return ids.empty() ? "none" : text.str();
+        text += (text.empty() ? "" : ", ") + named_id(id, names);
+      return ids.empty() ? "none" : text;
     }
 
     Face sorted(Face face)
@@ -75,7 +77,8 @@ namespace Nodus
     void check_selection(const GmshContent               &file,
                          const std::vector<unsigned int> &volume_ids,
                          const std::vector<char>         &selected,
-                         const std::string               &name)
+                         const std::string               &name,
+                         const Names                     &volume_names)
     {
       std::vector<char> has_volume(file.physical.size(), 0);
       for (const auto &hexahedron : file.hexahedra)
@@ -99,7 +102,9 @@ namespace Nodus
                     "groups, that the volumes are in one");
       for (const unsigned int id : volume_ids)
         if (present.count(id) == 0)
-          refuse_gmsh(name, "has no volume with physical id " + std::to_string(id) + "; ids present: " + list(present));
+          refuse_gmsh(name,
+                      "has no volume with physical id " + named_id(id, volume_names) +
+                          "; ids present: " + list(present, volume_names));
     }
 
     /// In the order of deal.II.
@@ -133,7 +138,7 @@ namespace Nodus
     }
 
     /// Adds the physical surfaces on the boundary of the cells. @throws InputError for faces with two ids.
-    void add_boundary(const GmshContent &file, const std::string &name, CoarseMesh &mesh)
+    void add_boundary(const GmshContent &file, const std::string &name, const Names &names, CoarseMesh &mesh)
     {
       const std::vector<Face> boundary = boundary_faces(mesh.cells, name);
       std::map<Face, int>     id_of_face;
@@ -156,7 +161,7 @@ namespace Nodus
           std::ostringstream where;
           where << 0.25 * (file.vertices[c[0]] + file.vertices[c[1]] + file.vertices[c[2]] + file.vertices[c[3]]);
           refuse_gmsh(name,
-                      "the face at " + where.str() + " has the physical ids " + list(ids) +
+                      "the face at " + where.str() + " has the physical ids " + list(ids, names) +
                           "; give each surface one physical id");
         }
         if (other != id_of_face.end())
@@ -236,6 +241,7 @@ namespace Nodus
   GmshFile::GmshFile(const std::string &name)
       : name_(name)
       , content_(std::make_unique<GmshContent>(read_gmsh(name)))
+      , names_(read_physical_names(name))
   {
     refuse_stray_faces(*content_, name);
   }
@@ -245,11 +251,12 @@ namespace Nodus
   CoarseMesh GmshFile::body(const std::vector<unsigned int> &volume_ids) const
   {
     const std::vector<char> selected = selected_groups(*content_, volume_ids);
-    check_selection(*content_, volume_ids, selected, name_);
+    check_selection(*content_, volume_ids, selected, name_, names_.volumes);
 
     CoarseMesh mesh;
+    mesh.boundary_names = names_.surfaces;
     add_cells(*content_, selected, mesh);
-    add_boundary(*content_, name_, mesh);
+    add_boundary(*content_, name_, names_.surfaces, mesh);
     mesh.vertices = content_->vertices;
     dealii::GridTools::delete_unused_vertices(mesh.vertices, mesh.cells, mesh.boundary);
     orient_cells(mesh);

@@ -2,10 +2,12 @@
 #define nodus_mesh_gmsh_reader_h
 
 #include "mesh/curved_geometry.h"
+#include "parameters/physical_names.h"
 #include <nodus/base/types.h>
 
 #include <deal.II/grid/tria_description.h>
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,10 +17,11 @@ namespace Nodus
   /// Vertices, cells and boundary faces of one body, ready for create_triangulation.
   struct CoarseMesh
   {
-    std::vector<Point>                 vertices;
-    std::vector<dealii::CellData<dim>> cells;
-    dealii::SubCellData                boundary; ///< faces with an id other than 0; may hold manifold ids
-    std::vector<QuadraticCell>         curved;   ///< one per cell of a second-order file, else empty
+    std::vector<Point>                  vertices;
+    std::vector<dealii::CellData<dim>>  cells;
+    dealii::SubCellData                 boundary;       ///< faces with an id other than 0; may hold manifold ids
+    std::vector<QuadraticCell>          curved;         ///< one per cell of a second-order file, else empty
+    std::map<unsigned int, std::string> boundary_names; ///< of physical surfaces, by id
   };
 
   struct GmshContent;
@@ -44,6 +47,7 @@ namespace Nodus
   private:
     std::string                  name_;
     std::unique_ptr<GmshContent> content_;
+    PhysicalNames                names_;
   };
 } // namespace Nodus
 

@@ -287,6 +287,7 @@ namespace Nodus
     MPI::broadcast(positions.data(), positions.size(), 0, communicator);
     MPI::broadcast(cells.data(), cells.size(), 0, communicator);
     MPI::broadcast(quads.data(), quads.size(), 0, communicator);
+    mesh.boundary_names = MPI::broadcast(communicator, mesh.boundary_names);
     if (first)
       return mesh;
 

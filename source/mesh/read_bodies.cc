@@ -282,6 +282,7 @@ namespace Nodus
       {
         const BodyParameters &body = parameters[b];
         names_.push_back(display_name(body, b));
+        boundary_names_.emplace_back();
         has_mesh_.push_back(body.has_mesh() || !body.rigid);
         if (!has_mesh_[b])
           continue;
@@ -293,9 +294,12 @@ namespace Nodus
         const auto      check_size = [&](const double n_coarse_cells)
         { refuse_beyond_memory(n_coarse_cells * std::pow(8., body.global_refinement), degree, communicator); };
         if (!body.mesh_file.empty())
+        {
           mesh = from_first_rank(
               [&] { return files.try_emplace(body.mesh_file, body.mesh_file).first->second.body(body.volume_ids); },
               communicator);
+          boundary_names_[b] = mesh.boundary_names;
+        }
         else
         {
           check_size(Generators::n_cells(body.generator, body.generator_arguments));

@@ -2,8 +2,10 @@
 #include "base/deal_ii_versions.h"
 #include "parallel/throw_everywhere.h"
 #include "parameters/expression.h"
+#include "parameters/physical_names.h"
 
 #include <cmath>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -23,38 +25,53 @@ namespace Nodus
   } // namespace
 
   Region::Region(const RegionParameters &parameters, const Bodies &bodies, const std::string &context)
-      : body_(parameters.body)
-      , ids_(parameters.boundary_ids)
+      : parameters_(parameters)
   {
-    if (body_ > bodies.size())
-      throw InputError(context + ": there is no body " + std::to_string(body_) + "; the bodies are numbered 1 to " +
-                       std::to_string(bodies.size()) + (body_ == 0 ? "" : ", and 0 stands for all of them"));
-
-    std::set<dealii::types::boundary_id> present;
-    for (unsigned int b = 0; b < bodies.size(); ++b)
-      if (body_ == 0 || b + 1 == body_)
-        present.insert(bodies.boundary_ids(b).begin(), bodies.boundary_ids(b).end());
-    for (const auto id : ids_)
-      if (present.count(id) == 0)
-      {
-        std::ostringstream list;
-        for (const auto i : present)
-          list << (list.tellp() > 0 ? ", " : "") << i;
-        throw InputError(
-            context + ": no face of " +
-            (body_ == 0 ? "any body" : "body " + std::to_string(body_) + " (" + bodies.name(body_ - 1) + ")") +
-            " has the boundary id " + std::to_string(id) + "; ids present: " + list.str() +
-            (present.size() == 1 ? " (a generator numbers the sides when its last argument, colorize, is true)" : ""));
-      }
-
+    refuse_absent(bodies, context);
     if (parameters.where.find_first_not_of(" \t") != std::string::npos)
     {
       predicate_ = parse_predicate(parameters.where, context);
-      refuse_undefined(bodies, context, parameters.where);
+      refuse_undefined(bodies, context);
     }
   }
 
-  void Region::refuse_undefined(const Bodies &bodies, const std::string &context, const std::string &where) const
+  void Region::refuse_absent(const Bodies &bodies, const std::string &context) const
+  {
+    const unsigned int body = parameters_.body;
+    if (body > bodies.size())
+      throw InputError(context + ": there is no body " + std::to_string(body) + "; the bodies are numbered 1 to " +
+                       std::to_string(bodies.size()) + ", and 0 stands for all of them");
+
+    std::map<dealii::types::boundary_id, std::string> present; // with names
+    std::set<std::string>                             found;   // names that faces have
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+      if (body == 0 || b + 1 == body)
+        for (const auto id : bodies.boundary_ids(b))
+        {
+          present.emplace(id, named_id(id, bodies.boundary_names(b)));
+          if (const auto name = bodies.boundary_names(b).find(id); name != bodies.boundary_names(b).end())
+            found.insert(name->second);
+        }
+    const auto refuse = [&](const std::string &what)
+    {
+      std::string list;
+      for (const auto &[id, text] : present)
+        list += (list.empty() ? "" : ", ") + text;
+      throw InputError(
+          context + ": no face of " +
+          (body == 0 ? "any body" : "body " + std::to_string(body) + " (" + bodies.name(body - 1) + ")") + " has the " +
+          what + "; ids present: " + list +
+          (present.size() == 1 ? " (a generator numbers the sides when its last argument, colorize, is true)" : ""));
+    };
+    for (const auto id : parameters_.boundary_ids)
+      if (present.count(id) == 0)
+        refuse("boundary id " + (body == 0 ? std::to_string(id) : named_id(id, bodies.boundary_names(body - 1))));
+    for (const std::string &name : parameters_.boundary_names)
+      if (found.count(name) == 0)
+        refuse("name '" + name + "'");
+  }
+
+  void Region::refuse_undefined(const Bodies &bodies, const std::string &context) const
   {
     std::string problem;
     const auto  test = [&](const Point &X)
@@ -63,7 +80,7 @@ namespace Nodus
       if (std::isfinite(value) || !problem.empty())
         return;
       std::ostringstream text;
-      text << context << ": 'Where' = '" << where << "' is " << no_number(value) << " at (" << X
+      text << context << ": 'Where' = '" << parameters_.where << "' is " << no_number(value) << " at (" << X
            << "); write a condition that is true or false everywhere";
       problem = text.str();
     };
@@ -74,7 +91,7 @@ namespace Nodus
       test(part->center());
     };
     for (const auto &cell : bodies.triangulation().active_cell_iterators())
-      if (cell->is_locally_owned() && ids_.empty() && contains_cell(cell))
+      if (cell->is_locally_owned() && !parameters_.has_ids() && contains_cell(cell))
         test_all(cell);
       else if (cell->is_locally_owned())
         for (const auto f : cell->face_indices())

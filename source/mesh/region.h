@@ -34,20 +34,15 @@ namespace Nodus
     template <typename Cell>
     bool contains_face(const Cell &cell, const unsigned int face) const
     {
-      if (!cell->face(face)->at_boundary() || (body_ != 0 && cell->material_id() + 1 != body_))
-        return false;
-      const auto id = cell->face(face)->boundary_id();
-      for (const auto i : ids_)
-        if (i == id)
-          return true;
-      return false;
+      return cell->face(face)->at_boundary() &&
+             parameters_.takes(cell->material_id() + 1, cell->face(face)->boundary_id());
     }
 
     /// True when the body of the cell belongs to the region (body forces).
     template <typename Cell>
     bool contains_cell(const Cell &cell) const
     {
-      return body_ == 0 || cell->material_id() + 1 == body_;
+      return parameters_.body == 0 || cell->material_id() + 1 == parameters_.body;
     }
 
     /// contains_face, and the predicate holds at the centre of the face as @p mapping bends it.
@@ -73,10 +68,10 @@ namespace Nodus
     bool contains_point(const Point &X) const;
 
   private:
-    void refuse_undefined(const Bodies &bodies, const std::string &context, const std::string &where) const;
+    void refuse_absent(const Bodies &bodies, const std::string &context) const;
+    void refuse_undefined(const Bodies &bodies, const std::string &context) const;
 
-    unsigned int                                 body_;
-    std::vector<dealii::types::boundary_id>      ids_;
+    RegionParameters                             parameters_;
     std::unique_ptr<dealii::FunctionParser<dim>> predicate_;
   };
 } // namespace Nodus

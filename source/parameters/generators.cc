@@ -342,5 +342,24 @@ namespace Nodus
       const bool has_colours = CylinderShellHasColours<dealii::Triangulation<3>>::value;
       return arguments + (has_colours && name == "cylinder_shell" ? " : false" : "");
     }
+
+    std::set<unsigned int> boundary_ids(const std::string &name, const std::string &arguments)
+    {
+      constexpr double quickly_made = 1e5;
+      if (!mistake_in_name(name).empty() || !mistake_in_arguments(name, arguments).empty() ||
+          n_cells(name, arguments) > quickly_made)
+        return {};
+      try
+      {
+        dealii::Triangulation<3> mesh;
+        dealii::GridGenerator::generate_from_name_and_arguments(mesh, name, arguments_for_deal_ii(name, arguments));
+        const auto ids = mesh.get_boundary_ids();
+        return std::set<unsigned int>(ids.begin(), ids.end());
+      }
+      catch (const std::exception &)
+      {
+        return {};
+      }
+    }
   } // namespace Generators
 } // namespace Nodus

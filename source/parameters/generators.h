@@ -1,6 +1,7 @@
 #ifndef nodus_parameters_generators_h
 #define nodus_parameters_generators_h
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ namespace Nodus
 
     /// What deal.II's function is called with: in newer versions some have one argument more.
     std::string arguments_for_deal_ii(const std::string &name, const std::string &arguments);
+
+    /// The ids that the generated mesh has; none where it cannot be made at once.
+    std::set<unsigned int> boundary_ids(const std::string &name, const std::string &arguments);
 
     /// Number of cells that the generator makes, but for a factor of 30 at most; 1 where the arguments do not say.
     double n_cells(const std::string &name, const std::string &arguments);

@@ -69,6 +69,8 @@ namespace Nodus
         return "true or false";
       if (description == "[Anything]")
         return "text";
+      if (description == "[Id or name]")
+        return "a whole number >= 0 or a name";
 
       std::string words = description.compare(0, 8, "[Integer") == 0 ? "a whole number" : "a number";
       if (std::regex_match(description, match, range))

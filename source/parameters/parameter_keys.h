@@ -62,7 +62,6 @@ namespace Nodus
     inline const Patterns::Double  any_number, not_negative(0.), positive(std::numeric_limits<double>::min());
     inline const Patterns::Integer count(0), at_least_one(1);
     inline const Patterns::List    numbers(Patterns::Double(), 0, std::numeric_limits<unsigned int>::max(), ",");
-    inline const Patterns::List    ids(Patterns::Integer(0), 0, std::numeric_limits<unsigned int>::max(), ",");
 
     /// Keys "Body", "Boundary ids", "Where" behind @p prefix, which is "Slave ", "Master " or empty.
     void add_region(ParameterHandler  &prm,

@@ -1,4 +1,5 @@
 #include "parameters/generators.h"
+#include "parameters/named_ids.h"
 #include "parameters/parameter_file.h"
 #include "parameters/parameter_keys.h"
 #include "parameters/parameter_reference.h"
@@ -133,8 +134,11 @@ namespace Nodus
           "the .prm file. The curved cells of a second-order file are kept under refinement; with Degree "
           "= 1 only the corners of the refined cells count. A body has either a mesh file or a generator.",
           Patterns::Anything());
-      prm.add_parameter(
-          "Volume ids", body.volume_ids, "Physical volumes taken from the mesh file [-]; empty: all.", ids);
+      add_ids(prm,
+              "Volume ids",
+              body.volume_ids,
+              body.volume_names,
+              "Physical volumes taken from the mesh file [-], by id or name, e.g. 2 or upper ring; empty: all.");
       prm.add_parameter("Generator",
                         body.generator,
                         "Function of deal.II's GridGenerator that makes the mesh [-], e.g. "
@@ -372,6 +376,7 @@ namespace Nodus
     if (parameters.output.results_folder.empty())
       parameters.output.results_folder = (std::filesystem::path("results") / path.stem()).string();
 
+    resolve_names(parameters, text);
     parameters.check(text);
     for (unsigned int b = 0; b < parameters.bodies.size(); ++b)
       if (const BodyParameters &body = parameters.bodies[b]; !body.generator.empty())

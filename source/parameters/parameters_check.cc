@@ -177,7 +177,8 @@ namespace Nodus
         section.require(body.generator_arguments.empty(), "Generator arguments", "goes with Generator only; remove it");
       }
       else
-        section.require(body.volume_ids.empty(), "Volume ids", "goes with Mesh file only; remove it");
+        section.require(
+            body.volume_ids.empty() && body.volume_names.empty(), "Volume ids", "goes with Mesh file only; remove it");
       section.require(body.rotation_angle == 0. || body.rotation_axis.norm() > 0.,
                       "Rotation axis",
                       "must not be zero when there is a Rotation angle; give a direction such as 0, 0, 1");
@@ -223,9 +224,9 @@ namespace Nodus
       using Type = BoundaryConditionParameters::Type;
       check(section, condition.region, "", n_bodies, 0);
       const bool on_boundary = condition.type != Type::body_force;
-      section.require(condition.region.boundary_ids.empty() != on_boundary,
+      section.require(condition.region.has_ids() == on_boundary,
                       "Boundary ids",
-                      on_boundary ? "is missing; give the ids of the faces the condition acts on"
+                      on_boundary ? "is missing; give the ids or names of the faces the condition acts on"
                                   : "has no meaning for a body force; remove it");
 
       const bool directed = condition.type != Type::pressure;

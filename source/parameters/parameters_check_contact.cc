@@ -121,9 +121,9 @@ namespace Nodus
       if (!pair.has_rigid_master())
       {
         check(section, pair.master, "Master ", n_bodies, 1);
-        section.require(!pair.master.boundary_ids.empty(),
+        section.require(pair.master.has_ids(),
                         "Master boundary ids",
-                        "is missing; give the boundary ids of the faces in contact");
+                        "is missing; give the boundary ids or names of the faces in contact");
         section.require(!share_faces(pair.slave, pair.master),
                         "Master boundary ids",
                         "names faces that are slaves of the same pair; give the two sides different bodies or ids");
@@ -140,8 +140,8 @@ namespace Nodus
         return;
       }
       const std::string shape = text_of(surface.shape);
-      for (const auto &[key, given] : {Given("Master boundary ids", !pair.master.boundary_ids.empty()),
-                                       Given("Master where", !pair.master.where.empty())})
+      for (const auto &[key, given] :
+           {Given("Master boundary ids", pair.master.has_ids()), Given("Master where", !pair.master.where.empty())})
         section.require(!given,
                         key,
                         "has no meaning besides 'Master surface = " + shape +
@@ -181,9 +181,9 @@ namespace Nodus
                     "Adjustment distance",
                     "has no effect; set 'Initial overclosure = strain-free adjust', or remove it");
     check(section, pair.slave, "Slave ", n_bodies, 1);
-    section.require(!pair.slave.boundary_ids.empty(),
+    section.require(pair.slave.has_ids(),
                     "Slave boundary ids",
-                    "is missing; give the boundary ids of the faces in contact");
+                    "is missing; give the boundary ids or names of the faces in contact");
     check_master(section, pair, n_bodies);
 
     using Scheme = ContactPairParameters::Scheme;

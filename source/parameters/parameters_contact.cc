@@ -1,3 +1,4 @@
+#include "parameters/named_ids.h"
 #include "parameters/parameter_file.h"
 #include "parameters/parameter_keys.h"
 
@@ -102,8 +103,12 @@ namespace Nodus
                                  const std::string &where)
   {
     prm.add_parameter(prefixed(prefix, "Body"), region.body, "Number of the body [-]" + every_body + ".", count);
-    prm.add_parameter(
-        prefixed(prefix, "Boundary ids"), region.boundary_ids, "Boundary ids of its faces [-], e.g. 1, 5.", ids);
+    add_ids(
+        prm,
+        prefixed(prefix, "Boundary ids"),
+        region.boundary_ids,
+        region.boundary_names,
+        "Boundary ids of its faces [-], or names of physical surfaces of its mesh file, e.g. 1, 5 or seal_outer, 5.");
     prm.add_parameter(prefixed(prefix, "Where"),
                       region.where,
                       "Condition on the reference coordinates x, y, z [length] that thins the faces out, e.g. "

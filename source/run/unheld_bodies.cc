@@ -112,11 +112,7 @@ namespace Nodus
                            [&](const ContactPairParameters &pair)
                            {
                              const auto has = [&](const RegionParameters &side)
-                             {
-                               return side.body == b + 1 &&
-                                      std::find(side.boundary_ids.begin(), side.boundary_ids.end(), id) !=
-                                          side.boundary_ids.end();
-                             };
+                             { return side.body == b + 1 && side.takes(b + 1, id); };
                              return has(pair.slave) || has(pair.master);
                            });
       };

@@ -1,6 +1,7 @@
 #include "run/validation.h"
 #include "base/deal_ii_versions.h"
 #include "mesh/sides.h"
+#include "parameters/physical_names.h"
 #include "run/unheld_bodies.h"
 #include "solve/linear_solver.h"
 
@@ -214,7 +215,7 @@ namespace Nodus
           text << text_of(material.law) << ", E = " << material.youngs_modulus << ", nu = " << material.poissons_ratio;
         console.line(text.str());
         for (const auto &[id, side] : sides[b])
-          console.line("    boundary id " + std::to_string(id) + ": " + side.text());
+          console.line("    boundary id " + named_id(id, model.bodies.boundary_names(b)) + ": " + side.text());
       }
     }
 

@@ -30,6 +30,20 @@ namespace Nodus
     unsigned int                            body = 0; ///< number of the body, 0 = every body
     std::vector<dealii::types::boundary_id> boundary_ids;
     std::string                             where; ///< muParser predicate of x, y, z; empty = everywhere
+    /// Names of physical surfaces, which Parameters::read() replaces by their ids, unless every body is meant ...
+    std::vector<std::string> boundary_names = {};
+    /// ... of which each, by its number, may have other ids for the same names.
+    std::map<unsigned int, std::vector<dealii::types::boundary_id>> ids_of_body = {};
+
+    /// Whether faces of a body (by number) with the boundary id @p id belong to it, but for where.
+    bool takes(unsigned int of_body, dealii::types::boundary_id id) const;
+    /// Whether ids or names are given at all.
+    bool has_ids() const
+    {
+      return !boundary_ids.empty() || !boundary_names.empty();
+    }
+    /// "1, 5", with the names of a region of every body behind the ids.
+    std::string ids_text() const;
   };
 
   /// A rigid body in time: x = c + R(t) (X - c) + T(t).
@@ -98,6 +112,7 @@ namespace Nodus
     std::string               name;
     std::string               mesh_file;           ///< resolved against the folder of the .prm file
     std::vector<unsigned int> volume_ids;          ///< physical volumes taken from the file; empty = all
+    std::vector<std::string>  volume_names;        ///< those that are named; Parameters::read() makes ids of them
     std::string               generator;           ///< deal.II GridGenerator function, when no mesh file
     std::string               generator_arguments; ///< separated by ':', as deal.II prints them
     double                    scale = 1.;

@@ -39,16 +39,12 @@ namespace Nodus
       /// any faces of its body, whose edges they may share.
       bool may_hold(const BoundaryConditionParameters &condition, const RegionParameters &side, const bool around)
       {
-        const auto &ids = condition.region.boundary_ids;
+        const auto &ids = side.boundary_ids;
         return condition.type == BoundaryConditionParameters::Type::displacement &&
                (condition.region.body == 0 || condition.region.body == side.body) &&
-               (around || ids.empty() ||
-                std::any_of(ids.begin(),
-                            ids.end(),
-                            [&](const auto id) {
-                              return std::find(side.boundary_ids.begin(), side.boundary_ids.end(), id) !=
-                                     side.boundary_ids.end();
-                            }));
+               (around || !condition.region.has_ids() ||
+                std::any_of(
+                    ids.begin(), ids.end(), [&](const auto id) { return condition.region.takes(side.body, id); }));
       }
     } // namespace
 
@@ -64,7 +60,7 @@ namespace Nodus
                  {&parameters.contact_pairs[p].slave, &parameters.contact_pairs[p].master})
               if (may_hold(condition, *side, around))
                 cause.changes.push_back({text("Boundary condition ", c + 1, "/Boundary ids"),
-                                         as_list(condition.region.boundary_ids),
+                                         condition.region.ids_text(),
                                          "another face",
                                          text("it holds ",
                                               side == &parameters.contact_pairs[p].slave ? "the slave" : "the master",
@@ -235,10 +231,10 @@ namespace Nodus
                                    text(pair.slave.body),
                                    text(pair.master.body),
                                    "slave and master change places, with their boundary ids",
-                                   {{"Slave boundary ids", as_list(pair.master.boundary_ids)},
+                                   {{"Slave boundary ids", pair.master.ids_text()},
                                     {"Slave where", pair.master.where},
                                     {"Master body", text(pair.slave.body)},
-                                    {"Master boundary ids", as_list(pair.slave.boundary_ids)},
+                                    {"Master boundary ids", pair.slave.ids_text()},
                                     {"Master where", pair.slave.where}}});
       }
       causes.push_back(cause);

@@ -1,0 +1,271 @@
+#include "parameters/named_ids.h"
+#include "base/suggestion.h"
+#include "parameters/generators.h"
+#include "parameters/parameter_file.h"
+#include "parameters/physical_names.h"
+#include <nodus/parameters/parameters.h>
+
+#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/patterns.h>
+#include <deal.II/base/utilities.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <memory>
+
+namespace Nodus
+{
+  namespace
+  {
+    /// So many names of a file are listed where one is wrong.
+    constexpr std::size_t most_listed = 30;
+
+    bool is_id(const std::string &text)
+    {
+      return !text.empty() && text.size() <= 10 && text.find_first_not_of("0123456789") == std::string::npos &&
+             std::stoul(text) <= std::numeric_limits<int>::max();
+    }
+
+    bool is_number(const std::string &text)
+    {
+      try
+      {
+        dealii::Utilities::string_to_double(text);
+        return true;
+      }
+      catch (const std::exception &)
+      {
+        return false;
+      }
+    }
+
+    class IdOrName : public dealii::Patterns::PatternBase
+    {
+    public:
+      bool match(const std::string &text) const override
+      {
+        return is_id(text) || (!text.empty() && !is_number(text));
+      }
+      std::string description(const OutputStyle = Machine) const override
+      {
+        return "[Id or name]";
+      }
+      std::unique_ptr<PatternBase> clone() const override
+      {
+        return std::make_unique<IdOrName>();
+      }
+    };
+
+    std::string joined(const std::vector<unsigned int> &ids, const std::vector<std::string> &names)
+    {
+      std::string text;
+      for (const unsigned int id : ids)
+        text += (text.empty() ? "" : ", ") + std::to_string(id);
+      for (const std::string &name : names)
+        text += (text.empty() ? "" : ", ") + name;
+      return text;
+    }
+
+    template <typename Number>
+    void add_once(const Number id, std::vector<Number> &ids)
+    {
+      if (std::find(ids.begin(), ids.end(), id) == ids.end())
+        ids.push_back(id);
+    }
+
+    /// What the mesh files of the bodies call by which name.
+    class Groups
+    {
+    public:
+      using Names = std::map<unsigned int, std::string>; ///< by id
+      enum class Kind
+      {
+        surface,
+        volume
+      };
+
+      explicit Groups(const std::vector<BodyParameters> &bodies)
+          : bodies_(bodies)
+      {
+      }
+
+      /// Several groups may have one name. Of a body without a file none.
+      std::vector<unsigned int> ids(const unsigned int body, const Kind kind, const std::string &name)
+      {
+        std::vector<unsigned int> result;
+        for (const auto &[id, candidate] : names(body, kind))
+          if (candidate == name)
+            result.push_back(id);
+        return result;
+      }
+
+      /// What is to be said of a name that none of the bodies has.
+      std::string complaint(const std::vector<unsigned int> &which, const Kind kind, const std::string &name)
+      {
+        const bool               surface = kind == Kind::surface;
+        std::vector<std::string> all;
+        std::string              text;
+        for (const unsigned int b : which)
+        {
+          for (const auto &[id, candidate] : names(b, kind))
+            add_once(candidate, all);
+          text += "; " + described(b, kind);
+          if (!ids(b, surface ? Kind::volume : Kind::surface, name).empty())
+            text += ", and '" + name + "' is a " + (surface ? "volume" : "surface") + " of it";
+        }
+        const auto near = nearest(name, all);
+        return "names '" + name + "', which is no physical " + (surface ? "surface" : "volume") + " of " +
+               (which.size() == 1 ? "body " + std::to_string(which[0] + 1) : "any body") + text +
+               (near.empty() ? "" : did_you_mean(near));
+      }
+
+    private:
+      const Names &names(const unsigned int body, const Kind kind)
+      {
+        const std::string &file = bodies_[body].mesh_file;
+        if (file.empty())
+          return none_;
+        auto found = of_file_.find(file);
+        if (found == of_file_.end())
+          found = of_file_.emplace(file, read_physical_names(file)).first;
+        return kind == Kind::surface ? found->second.surfaces : found->second.volumes;
+      }
+
+      /// "mesh file seal.msh has 1 (top), 2 (seal_outer)".
+      std::string described(const unsigned int b, const Kind kind)
+      {
+        const BodyParameters &body   = bodies_[b];
+        const std::string     groups = kind == Kind::surface ? "surfaces" : "volumes";
+        std::string           list;
+        if (body.mesh_file.empty())
+        {
+          for (const unsigned int id : Generators::boundary_ids(body.generator, body.generator_arguments))
+            list += (list.empty() ? " with the ids " : ", ") + std::to_string(id);
+          return "body " + std::to_string(b + 1) + " is generated" + list + ", and names belong to mesh files";
+        }
+        std::size_t n = 0;
+        for (const auto &[id, name] : names(b, kind))
+          if (++n <= most_listed)
+            list += (n == 1 ? " has the physical " + groups + " " : ", ") + named_id(id, {{id, name}});
+        if (n == 0)
+          list = " has no names of physical " + groups + ": give ids, or name them in gmsh";
+        return "mesh file " + body.mesh_file + list + (n > most_listed ? ", ..." : "");
+      }
+
+      const std::vector<BodyParameters>   &bodies_;
+      std::map<std::string, PhysicalNames> of_file_;
+      const Names                          none_;
+    };
+
+    /// Of a boundary condition or of one side of a contact pair.
+    void resolve(RegionParameters    &region,
+                 const std::string   &section,
+                 const std::string   &key,
+                 const unsigned int   n_bodies,
+                 Groups              &groups,
+                 const ParameterFile &file)
+    {
+      if (region.body > n_bodies)
+        return;
+      std::vector<unsigned int> bodies;
+      for (unsigned int b = 0; b < n_bodies; ++b)
+        if (region.body == 0 || region.body == b + 1)
+          bodies.push_back(b);
+      for (const std::string &name : region.boundary_names)
+      {
+        bool found = false;
+        for (const unsigned int b : bodies)
+          for (const unsigned int id : groups.ids(b, Groups::Kind::surface, name))
+          {
+            add_once(id, region.body > 0 ? region.boundary_ids : region.ids_of_body[b + 1]);
+            found = true;
+          }
+        if (!found)
+          file.refuse(section, key, groups.complaint(bodies, Groups::Kind::surface, name));
+      }
+      if (region.body > 0)
+        region.boundary_names.clear();
+    }
+  } // namespace
+
+  void add_ids(dealii::ParameterHandler  &prm,
+               const std::string         &key,
+               std::vector<unsigned int> &ids,
+               std::vector<std::string>  &names,
+               const std::string         &documentation)
+  {
+    prm.declare_entry(key,
+                      joined(ids, names),
+                      dealii::Patterns::List(IdOrName(), 0, std::numeric_limits<unsigned int>::max(), ","),
+                      documentation);
+    prm.add_action(key,
+                   [&ids, &names](const std::string &text)
+                   {
+                     ids.clear();
+                     names.clear();
+                     for (const std::string &item : dealii::Utilities::split_string_list(text, ','))
+                       if (is_id(item))
+                         ids.push_back(std::stoul(item));
+                       else
+                         names.push_back(item);
+                   });
+  }
+
+  bool RegionParameters::takes(const unsigned int of_body, const dealii::types::boundary_id id) const
+  {
+    const auto has = [id](const auto &ids) { return std::find(ids.begin(), ids.end(), id) != ids.end(); };
+    if (body != 0 && body != of_body)
+      return false;
+    const auto own = ids_of_body.find(of_body);
+    return has(boundary_ids) || (own != ids_of_body.end() && has(own->second));
+  }
+
+  std::string RegionParameters::ids_text() const
+  {
+    return joined(boundary_ids, boundary_names);
+  }
+
+  void resolve_names(Parameters &parameters, const ParameterFile &file)
+  {
+    auto &bodies = parameters.bodies;
+    for (const BodyParameters &body : bodies)
+    {
+      std::error_code unknown;
+      if (!body.mesh_file.empty() && !std::filesystem::is_regular_file(body.mesh_file, unknown))
+        return; // which is the mistake to speak of
+    }
+    Groups groups(bodies);
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+    {
+      if (bodies[b].mesh_file.empty())
+        continue;
+      for (const std::string &name : bodies[b].volume_names)
+      {
+        const auto ids = groups.ids(b, Groups::Kind::volume, name);
+        if (ids.empty())
+          file.refuse("Body " + std::to_string(b + 1), "Volume ids", groups.complaint({b}, Groups::Kind::volume, name));
+        for (const unsigned int id : ids)
+          add_once(id, bodies[b].volume_ids);
+      }
+      bodies[b].volume_names.clear();
+    }
+    const unsigned int n = bodies.size();
+    for (unsigned int i = 0; i < parameters.boundary_conditions.size(); ++i)
+      resolve(parameters.boundary_conditions[i].region,
+              "Boundary condition " + std::to_string(i + 1),
+              "Boundary ids",
+              n,
+              groups,
+              file);
+    for (unsigned int i = 0; i < parameters.contact_pairs.size(); ++i)
+    {
+      ContactPairParameters &pair    = parameters.contact_pairs[i];
+      const std::string      section = "Contact pair " + std::to_string(i + 1);
+      if (pair.slave.body > 0)
+        resolve(pair.slave, section, "Slave boundary ids", n, groups, file);
+      if (pair.master.body > 0 && !pair.has_rigid_master())
+        resolve(pair.master, section, "Master boundary ids", n, groups, file);
+    }
+  }
+} // namespace Nodus
