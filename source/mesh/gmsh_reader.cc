@@ -73,6 +73,15 @@ namespace Nodus
       return selected;
     }
 
+    /// Before the last way out.
+    std::string way_to_hexahedra(const GmshContent::Other &other, const std::string &name)
+    {
+      const std::string in_gmsh = "use transfinite or extruded volumes with Recombine, or";
+      if (std::string(other.type) == "pyramids")
+        return in_gmsh;
+      return "'contrib/convert " + name + " hexahedra.msh' makes them of tetrahedra and prisms; or " + in_gmsh;
+    }
+
     /// @throws InputError where the selected volumes are not there, or not of hexahedra.
     void check_selection(const GmshContent               &file,
                          const std::vector<unsigned int> &volume_ids,
@@ -87,9 +96,8 @@ namespace Nodus
       {
         if (selected[other.group])
           refuse_gmsh(name,
-                      "holds " + std::string(other.type) +
-                          ", nodus needs hexahedra only: use transfinite or extruded volumes with Recombine, or select "
-                          "other volumes with 'Volume ids'");
+                      "holds " + std::string(other.type) + ", nodus needs hexahedra only: " +
+                          way_to_hexahedra(other, name) + " select other volumes with 'Volume ids'");
         has_volume[other.group] = 1;
       }
       std::set<int> present;
