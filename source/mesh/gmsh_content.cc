@@ -4,10 +4,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <map>
-#include <sstream>
 #include <string_view>
 #include <unordered_map>
 
@@ -17,7 +18,12 @@ namespace Nodus
   {
     using PhysicalIds = GmshContent::PhysicalIds;
 
-    /// Reads one file; every failure carries its name.
+    const std::string again = "; write it again with gmsh";
+    /// The number 1 as machines of the other byte order write it.
+    constexpr int swapped_one = 1 << 24;
+
+    /// Reads one file; every failure carries its name. Numbers of binary sections stand as they are in memory, and what
+    /// is between the sections is text there, too.
     class Reader
     {
     public:
@@ -43,13 +49,13 @@ namespace Nodus
           else if (version.empty())
             break;
           else if (section == "$Entities")
-            read_entities();
+            read_section(section, [this] { read_entities(); });
           else if (section == "$Nodes")
-            version == "2.2" ? read_nodes_22() : read_nodes_41();
+            read_section(section, [&] { version == "2.2" ? read_nodes_22() : read_nodes_41(); });
           else if (section == "$Elements")
-            version == "2.2" ? read_elements_22() : read_elements_41();
+            read_section(section, [&] { version == "2.2" ? read_elements_22() : read_elements_41(); });
           else if (section[0] == '$' && section.substr(0, 4) != "$End")
-            skip_section();
+            skip_section(section);
         }
         if (version.empty())
           fail("is not a gmsh .msh file: it does not start with $MeshFormat");
@@ -78,45 +84,101 @@ namespace Nodus
         return std::string_view(begin, here_ - begin);
       }
 
-      /// From here to behind the line that ends the section.
-      void skip_section()
+      /// From here to behind the line that ends the section. In binary data anything may look like the end of another.
+      void skip_section(const std::string_view section)
       {
         const std::string_view rest(here_, end_ - here_);
-        const auto             last = rest.find("\n$End");
+        const auto             last = rest.find("\n$End" + (binary_ ? std::string(section.substr(1)) : std::string()));
         here_                       = last == std::string_view::npos ? end_ : here_ + last + 1;
         word();
       }
 
-      template <typename Number>
+      /// A binary section that does not end where its counts say is damaged.
+      template <typename Function>
+      void read_section(const std::string_view section, const Function &read)
+      {
+        const std::string end = "$End" + std::string(section.substr(1));
+        end_line();
+        read();
+        if (binary_ && word() != end)
+          fail("has a damaged section " + std::string(section) + ", which does not end where it should" + again);
+      }
+
+      /// Binary numbers begin behind the line break.
+      void end_line()
+      {
+        if (!binary_)
+          return;
+        while (here_ != end_ && *here_ != '\n')
+          ++here_;
+        if (here_ != end_)
+          ++here_;
+      }
+
+      /// The next number, which is a Binary in a binary section.
+      template <typename Binary, typename Number = Binary>
       Number next()
+      {
+        if (!binary_)
+          return parse<Number>();
+        Binary value{};
+        if (static_cast<std::size_t>(end_ - here_) < sizeof(value))
+          fail("ends early" + again);
+        std::memcpy(&value, here_, sizeof(value));
+        here_ += sizeof(value);
+        return value;
+      }
+      /// Tags of nodes and elements, in the two formats.
+      long tag_22()
+      {
+        return next<int, long>();
+      }
+      long tag_41()
+      {
+        return next<std::size_t, long>();
+      }
+
+      template <typename Number>
+      Number parse()
       {
         while (here_ != end_ && (is_space(*here_) || *here_ == '+'))
           ++here_;
         Number     value{};
         const auto result = std::from_chars(here_, end_, value);
         if (result.ec != std::errc() || (result.ptr != end_ && !is_space(*result.ptr)))
-          fail("ends early or holds text where a number belongs; write it again with gmsh");
+          fail("ends early or holds text where a number belongs" + again);
         here_ = result.ptr;
         return value;
       }
 
-      /// How many numbers follow, each of which takes two characters at least.
+      /// How many numbers follow, each of which takes two characters at least, or four bytes.
+      template <typename Binary>
       std::size_t count()
       {
-        const auto n = next<std::size_t>();
-        if (n > static_cast<std::size_t>(end_ - here_) / 2)
-          fail("announces " + std::to_string(n) + " entries and ends before them; write it again with gmsh");
+        const auto n = next<Binary, std::size_t>();
+        if (n > static_cast<std::size_t>(end_ - here_) / (binary_ ? 4 : 2))
+          fail("announces " + std::to_string(n) + " entries and ends before them" + again);
         return n;
       }
 
       std::string read_format()
       {
         const std::string version(word());
-        const bool        binary = next<int>() != 0;
-        if (binary)
-          fail("is binary: save with Mesh.Binary=0");
+        const bool        binary = parse<int>() != 0;
         if (version != "2.2" && version != "4.1")
           fail("has format " + version + ": save with Mesh.MshFileVersion=4.1 (or 2.2)");
+        if (!binary)
+          return version;
+        if (const auto size = parse<std::size_t>(); size != sizeof(std::size_t))
+          fail("is binary with numbers of " + std::to_string(size) + " bytes instead of " +
+               std::to_string(sizeof(std::size_t)) + ": save with Mesh.Binary=0");
+        binary_ = true;
+        end_line();
+        const int one = next<int>();
+        if (one == swapped_one)
+          fail("is binary with the order of bytes of another kind of machine: save with Mesh.Binary=0");
+        if (one != 1)
+          fail("is damaged behind $MeshFormat" + again);
         return version;
       }
 
@@ -128,11 +190,20 @@ namespace Nodus
         return group->second;
       }
 
+      /// The sign holds the orientation only.
+      int physical_id()
+      {
+        const int id = next<int>();
+        if (id == std::numeric_limits<int>::min())
+          fail("has a damaged physical id" + again);
+        return std::abs(id);
+      }
+
       unsigned int read_physical_ids()
       {
-        PhysicalIds ids(count());
+        PhysicalIds ids(count<std::size_t>());
         for (int &id : ids)
-          id = std::abs(next<int>()); // the sign holds the orientation only
+          id = physical_id();
         return group_of(std::move(ids));
       }
 
@@ -161,17 +232,18 @@ namespace Nodus
         for (unsigned int d = 0; d < dim; ++d)
           p[d] = next<double>();
         if (!std::isfinite(p.square()))
-          fail("has no finite position for node " + std::to_string(tag) + "; write it again with gmsh");
+          fail("has no finite position for node " + std::to_string(tag) + again);
         if (!index_.try_emplace(tag, content_.vertices.size()).second)
-          fail("defines node " + std::to_string(tag) + " twice; write it again with gmsh");
+          fail("defines node " + std::to_string(tag) + " twice" + again);
         content_.vertices.push_back(p);
       }
 
       void read_nodes_22()
       {
-        const auto n = next<std::size_t>();
+        const auto n = parse<std::size_t>();
+        end_line();
         for (std::size_t i = 0; i < n; ++i)
-          read_vertex(next<long>());
+          read_vertex(tag_22());
       }
 
       void read_nodes_41()
@@ -184,9 +256,9 @@ namespace Nodus
           const auto dimension = next<int>();
           next<int>(); // entity
           const bool        parametric = next<int>() != 0;
-          std::vector<long> tags(count());
+          std::vector<long> tags(count<std::size_t>());
           for (long &tag : tags)
-            tag = next<long>();
+            tag = tag_41();
           for (const long tag : tags)
           {
             read_vertex(tag);
@@ -198,15 +270,30 @@ namespace Nodus
 
       void read_elements_22()
       {
-        std::vector<int> tags;
-        for (auto n = next<std::size_t>(); n > 0; --n)
+        const auto n = parse<std::size_t>();
+        end_line();
+        for (std::size_t i = 0; i < n;)
         {
-          next<long>(); // element number
-          const auto type = next<int>();
-          tags.resize(count());
-          for (int &tag : tags)
-            tag = next<int>();
-          read_element(type, group_of(tags.empty() || tags[0] == 0 ? PhysicalIds() : PhysicalIds{std::abs(tags[0])}));
+          // in a binary file several elements may share their type and number of tags
+          if (!binary_)
+            parse<long>(); // element number
+          const auto type     = next<int>();
+          const auto together = binary_ ? next<int>() : 1;
+          const auto n_tags   = count<int>();
+          if (together < 1 || static_cast<std::size_t>(together) > n - i)
+            fail("is damaged among its elements" + again);
+          for (int j = 0; j < together; ++j, ++i)
+          {
+            if (binary_)
+              next<int>();   // element number
+            PhysicalIds ids; // the first of the tags
+            for (std::size_t tag = 0; tag < n_tags; ++tag)
+              if (tag > 0)
+                next<int>();
+              else if (const int id = physical_id(); id != 0)
+                ids.push_back(id);
+            read_element<int>(type, group_of(std::move(ids)));
+          }
         }
       }
 
@@ -224,12 +311,14 @@ namespace Nodus
           const unsigned int group     = entity != entities_.end() ? entity->second : group_of({});
           for (auto n = next<std::size_t>(); n > 0; --n)
           {
-            next<long>(); // element number
-            read_element(type, group);
+            tag_41(); // element number
+            read_element<std::size_t>(type, group);
           }
         }
       }
 
+      /// @tparam Tag: of its nodes in a binary file
+      template <typename Tag>
       void read_element(const int type, const unsigned int group)
       {
         // gmsh's types 1 to 19 are the elements of first and second order
@@ -241,10 +330,10 @@ namespace Nodus
         std::array<unsigned int, 27> nodes;
         for (unsigned int i = 0; i < n_nodes[type]; ++i)
         {
-          const auto tag   = next<long>();
+          const auto tag   = next<Tag, long>();
           const auto index = index_.find(tag);
           if (index == index_.end())
-            fail("uses node " + std::to_string(tag) + ", which it does not define; write it again with gmsh");
+            fail("uses node " + std::to_string(tag) + ", which it does not define" + again);
           nodes[i] = index->second;
         }
         const auto is = [type](const std::initializer_list<int> types)
@@ -271,6 +360,7 @@ namespace Nodus
 
       std::string                                 file_, text_;
       const char                                 *here_ = nullptr, *end_ = nullptr;
+      bool                                        binary_ = false;
       GmshContent                                 content_;
       std::unordered_map<long, unsigned int>      index_; ///< node tag -> index into vertices
       std::map<PhysicalIds, unsigned int>         group_;

@@ -26,7 +26,7 @@ namespace Nodus
 
   struct GmshContent;
 
-  /// A gmsh file (ASCII, version 2.2 or 4.1), of which several bodies may take their volumes.
+  /// A gmsh file (text or binary, version 2.2 or 4.1), of which several bodies may take their volumes.
   ///
   /// Not GridIn::read_msh: bodies are cut out here before a triangulation exists, so that two bodies may come from one
   /// file whose volumes share the nodes of their interface, and a physical surface inside a body is ignored; GridIn

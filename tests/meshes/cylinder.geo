@@ -41,5 +41,3 @@ Physical Surface(1) = {1:5};
 Physical Surface(2) = top[];
 Physical Surface(3) = mantle[];
 Physical Volume(1)  = {1:5};
-
-Mesh.Binary = 0;
