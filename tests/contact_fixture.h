@@ -40,6 +40,7 @@ struct ContactFixture
     state.prescribed = zero;
     state.lambda.assign(surfaces->slave_nodes().size(), 0.);
     state.Lambda.assign(surfaces->slave_nodes().size(), {{0., 0.}});
+    state.elastic_slip.assign(surfaces->slave_nodes().size(), Nodus::Vector3());
     system.layout = &surfaces->layout();
     pair_at(state.x);
   }

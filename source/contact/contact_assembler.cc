@@ -100,6 +100,21 @@ namespace Nodus
       return {status.contact(site), status.friction(site), status.stick(site)};
     }
 
+    /// Where some nodes of the point are open the pressure of the others is that of their part of it.
+    void give_way(const PressureGapLaw *const gap_law, LawPoint &law)
+    {
+      double closed = 0., lambda = 0.;
+      for (unsigned int a = 0; a < law.n_nodes && gap_law != nullptr; ++a)
+        if (law.nodes[a].status.contact)
+        {
+          closed += law.nodes[a].shape;
+          lambda += law.nodes[a].shape * law.nodes[a].lambda;
+        }
+      const Closure closure = closed > 0. ? closure_at(gap_law, lambda / closed) : Closure();
+      law.overclosure       = closed * closure.overclosure;
+      law.compliance        = closure.compliance;
+    }
+
     LawFrame law_frame(const SitePairing &pairing)
     {
       return {pairing.normal, pairing.tangent, pairing.tangent_free, pairing.friction_scale};
@@ -146,7 +161,8 @@ namespace Nodus
                               law_frame(pairing_[k]),
                               point.shape[a],
                               state.lambda[k],
-                              state.Lambda[k]};
+                              state.Lambda[k],
+                              state.elastic_slip[k]};
     }
     law.threshold = 0.;
     for (unsigned int a = 0; a < law.n_jumps; ++a)
@@ -167,6 +183,8 @@ namespace Nodus
     law.tangential_augmentation = status_.tangential_augmentation(point.slaves[0], law.threshold);
     law.in_the_mean             = pointwise && status_.projected(point.site);
     law.held                    = status_.holds_friction(jump_site(point, 0));
+    law.elastic_slip            = status_.elastic_slip(point.slaves[0]);
+    give_way(status_.pressure_gap_law(point.slaves[0]), law);
   }
 
   ContactResidual ContactAssembler::residual(const ContactState &state) const

@@ -25,6 +25,8 @@ namespace Nodus
     std::vector<Point>   centre;     ///< of the driven rigid bodies
     std::vector<double>  lambda;     ///< per slave node [pressure]
     std::vector<std::array<double, 2>> Lambda; ///< per slave node, in its tangent frame
+    /// As the increment began, per slave node, in space and in the scale of the slip (eq. F4) [length].
+    std::vector<Vector3> elastic_slip;
   };
 
   /// Contact and friction terms of the residual (eq. 49-59; weak form eq. 10-15), owned sites and ghosts.

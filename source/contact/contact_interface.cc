@@ -37,6 +37,7 @@ namespace Nodus
       rigid_numbers[rigid_bodies.body(i)] = i;
     surfaces_.set_rigid_bodies(rigid_numbers);
     now_.tangents.assign(surfaces_.slave_nodes().size(), {});
+    now_.elastic_slip.assign(surfaces_.slave_nodes().size(), Vector3());
     now_.area.assign(surfaces_.slave_nodes().size(), 0.);
     now_.force.assign(surfaces_.n_sites(), Vector3());
     now_.jump.assign(surfaces_.n_sites(), Vector3());
@@ -105,6 +106,7 @@ namespace Nodus
       state_.lambda[k] = all[3 * k];
       state_.Lambda[k] = {{all[3 * k + 1], all[3 * k + 2]}};
     }
+    state_.elastic_slip = now_.elastic_slip;
   }
 
   void ContactInterface::pair(BlockVector &unknowns, const Vector &start)
@@ -233,7 +235,8 @@ namespace Nodus
     freeze_threshold(duration);
     for (const ContactPoint &point : weights_.points())
       if (const unsigned int k = point.slaves[0]; point.slaves.size() == 1 && surfaces_.is_owned(k) &&
-                                                  before[k] != 0. && status_.friction(k) && status_.stick(k))
+                                                  before[k] != 0. && status_.friction(k) && status_.stick(k) &&
+                                                  status_.elastic_slip(k) == 0.)
         for (unsigned int i = 0; i < 2; ++i)
           unknowns.block(2)(2 * surfaces_.multiplier(k) + i) = state_.Lambda[k][i] * before[k] / status_.threshold(k);
     unknowns.block(2).compress(dealii::VectorOperation::insert);
@@ -244,14 +247,10 @@ namespace Nodus
   {
     if (!status_.friction_varies() || duration == 0.)
       return;
-    std::vector<double> rate(surfaces_.n_sites(), 0.);
-    for (unsigned int s = 0; s < rate.size(); ++s)
-      if (surfaces_.is_owned(s))
-      {
-        const auto moved = slip(s);
-        rate[s]          = std::hypot(moved[0], moved[1]) / duration;
-      }
-    status_.set_slip_rates(rate);
+    std::vector<std::array<double, 2>> slips;
+    for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
+      slips.push_back(surfaces_.is_owned(s) ? slip(s) : std::array<double, 2>());
+    status_.set_slips(slips, duration);
   }
 
   std::vector<double> ContactInterface::pressure() const
@@ -332,15 +331,18 @@ namespace Nodus
 
   // -------------------------------------------------------------------------------------------------------- state kept
 
-  void ContactInterface::end_increment()
+  void ContactInterface::end_increment(const double duration)
   {
     std::vector<std::array<double, 2>> slips;
     for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
       slips.push_back(status_.holds_friction(s) ? std::array<double, 2>{{0., 0.}} : slip(s));
-    status_.add_slip(slips);
+    status_.add_slip(slips, duration, pressure());
     for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
       if (surfaces_.is_owned(s) && surfaces_.has_status(s))
         now_.force[s] = -residual_.jump[s];
+    for (unsigned int k = 0; k < now_.elastic_slip.size(); ++k)
+      now_.elastic_slip[k] = status_.elastic_slip(k) * (state_.Lambda[k][0] * pairing_[k].tangent[0] +
+                                                        state_.Lambda[k][1] * pairing_[k].tangent[1]);
     now_.jump = displacement_jumps();
     now_.area = weights_.area();
     now_.stuck.assign(now_.stuck.size(), 0);

@@ -79,7 +79,7 @@ namespace Nodus
     /// @p duration of the increment [time]; 0: the rates stay.
     void freeze_threshold(double duration);
     /// The same within Newton's iteration: sticking nodes keep their friction traction mu lambda Lambda, which as
-    /// unknown of the iteration is linear (theory section 12).
+    /// unknown of the iteration is linear (theory section 12), unless elastic slip gives Lambda.
     void follow_pressure(double duration, BlockVector &unknowns, const Vector &start);
     void update_slip_rates(double duration);
     /// Contact pressure of every site (site_values.h).
@@ -110,8 +110,9 @@ namespace Nodus
     /// Largest relative violation of the contact and friction laws (eq. N4): lengths over @p length.
     double norm(double length) const;
 
-    /// The increment has converged: slips, forces, jumps and areas become those that the next one begins with.
-    void end_increment();
+    /// The increment has converged after @p duration [time]: slips, forces, jumps and areas become those that the next
+    /// one begins with.
+    void end_increment(double duration);
 
     /// What the user sees, of this rank's part of the surfaces and on all ranks.
     std::vector<ContactFields>     fields() const;

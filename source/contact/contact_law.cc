@@ -65,13 +65,15 @@ namespace Nodus
       Node         nodes[LawPoint::max_nodes];
       Jump         jumps[LawPoint::max_nodes];
       double       lambda_c = 0., lambda_o = 0., distance = 0.;
-      Column3      Lambda_stick = Column3::Zero(), slip_stick = Column3::Zero(), Lambda_slip = Column3::Zero(),
+      /// With elastic slip slip_stick is what friction that sticks leaves of the slip, slip_slip the trial (eq. F4).
+      Column3 Lambda_stick = Column3::Zero(), slip_stick = Column3::Zero(), Lambda_slip = Column3::Zero(),
               slip_slip      = Column3::Zero();
       Column3 Lambda_void[2] = {Column3::Zero(), Column3::Zero()};
       bool    slips          = false, held;
       double  W, Wt; ///< weight, and weight times threshold
       double  threshold, h_n, h_tau;
       double  stiffness; ///< 0, or h_n where regularised (eq. F3)
+      double  overclosure, compliance, elastic_slip;
       Column3 pi  = Column3::Zero();
       Matrix3 K_B = Matrix3::Zero();
     };
@@ -93,9 +95,9 @@ namespace Nodus
       K_B = (Matrix3::Identity() - pi * pi.transpose()) / norm;
     }
 
-    void add_node(const LawNode &from, const bool in_the_mean, Node &node, Fields &f)
+    void add_node(const LawNode &from, const LawPoint &point, Node &node, Fields &f)
     {
-      static_cast<Filtered &>(node) = filter(from.status, from.shape, in_the_mean);
+      static_cast<Filtered &>(node) = filter(from.status, from.shape, point.in_the_mean);
       for (unsigned int i = 0; i < 2; ++i)
       {
         const bool carries   = from.status.friction && from.frame.tangent_free[i];
@@ -110,6 +112,12 @@ namespace Nodus
       f.lambda_o += node.open * from.lambda;
       f.Lambda_stick += node.stick * Lambda;
       f.Lambda_slip += node.slip * Lambda;
+      if (point.elastic_slip > 0.) // eq. F4
+      {
+        const Column3 before = node.tangent.transpose() * (node.tangent * eigen(from.elastic_slip));
+        f.slip_stick += node.stick * (before - point.elastic_slip * Lambda);
+        f.slip_slip += node.slip * before;
+      }
       f.slips = f.slips || node.slip != 0.;
     }
 
@@ -135,7 +143,7 @@ namespace Nodus
       f.n_nodes = point.n_nodes;
       f.n_jumps = point.n_jumps;
       for (unsigned int a = 0; a < f.n_nodes; ++a)
-        add_node(point.nodes[a], point.in_the_mean, f.nodes[a], f);
+        add_node(point.nodes[a], point, f.nodes[a], f);
       for (unsigned int a = 0; a < f.n_jumps; ++a)
         add_jump(point.jumps[a], point.in_the_mean, f.jumps[a], f);
       f.W         = point.weight;
@@ -144,6 +152,10 @@ namespace Nodus
       f.h_n       = point.normal_augmentation;
       f.h_tau     = point.tangential_augmentation;
       f.held      = point.held;
+
+      f.overclosure  = point.overclosure;
+      f.compliance   = point.compliance;
+      f.elastic_slip = point.elastic_slip;
       // the normal law of a point is projected, too: its pressure is lambda - h_n d_n where that is negative (eq. F3)
       f.stiffness = point.in_the_mean ? f.h_n : 0.;
       if (f.slips && f.held) // Lambda stays as it is (theory section 14, held friction)
@@ -197,7 +209,8 @@ namespace Nodus
         const Node        &i  = f.nodes[a];
         const unsigned int ia = first + 3 * a;
         // The contact law (eq. 55, 56): no pressure where open, no distance in contact.
-        r(ia) += -W * i.open * f.lambda_o / f.h_n - W * i.contact * f.distance;
+        // With a pressure-gap law it is the distance that the pressure gives (eq. C1).
+        r(ia) += -W * i.open * f.lambda_o / f.h_n - W * i.contact * (f.distance - f.overclosure);
         // The friction law (eq. 57-59): no slip where it sticks, the direction of slip where it slips; the plus before
         // the second term is what makes the tangent symmetric.
         Eigen::Vector2d law = -Wt * i.stick * i.tangent * f.slip_stick;
@@ -210,8 +223,10 @@ namespace Nodus
         {
           const Node        &j  = f.nodes[c];
           const unsigned int jc = first + 3 * c;
-          A(ia, jc) -= W / f.h_n * i.open * j.open; // eq. 45
-          if (f.slips)                              // eq. 46
+          A(ia, jc) -= W / f.h_n * i.open * j.open + W * f.compliance * i.contact * j.contact; // eq. 45, C2
+          A.block<2, 2>(ia + 1, jc + 1) +=
+              Wt * f.elastic_slip * i.stick * j.stick * i.tangent * j.tangent.transpose(); // eq. F5
+          if (f.slips)                                                                     // eq. 46
             A.block<2, 2>(ia + 1, jc + 1) +=
                 Wt / f.h_tau * i.slip * j.slip * i.tangent * (Matrix3::Identity() - f.K_B) * j.tangent.transpose();
           for (unsigned int t = 0; t < 2; ++t) // eq. 47
@@ -228,11 +243,12 @@ namespace Nodus
       const unsigned int first = 3 * f.n_jumps;
       const double       W = f.W, Wt = f.Wt;
       // h_tau ~ 1/threshold (eq. T2)
-      const Column3 pi_t = f.slips ? Column3(f.K_B * f.slip_slip * (f.h_tau / -f.threshold)) : f.pi;
+      const bool    stuck = f.n_nodes > 1 || f.elastic_slip > 0.;
+      const Column3 pi_t  = f.slips ? Column3(f.K_B * f.slip_slip * (f.h_tau / -f.threshold)) : f.pi;
       for (unsigned int a = 0; a < f.n_jumps; ++a)
       {
         const Jump &i         = f.jumps[a];
-        r_t.segment<3>(3 * a) = -W * i.projector * ((f.n_nodes > 1 ? i.stick : 0.) * f.Lambda_stick + i.slip * f.pi) -
+        r_t.segment<3>(3 * a) = -W * i.projector * ((stuck ? i.stick : 0.) * f.Lambda_stick + i.slip * f.pi) -
                                 Wt * i.slip * i.projector * pi_t;
       }
       for (unsigned int a = 0; a < f.n_nodes; ++a)
@@ -280,6 +296,6 @@ namespace Nodus
   double threshold_weight(const LawPoint &point, const unsigned int a)
   {
     const Filtered f = filter(point.jumps[a].status, point.jumps[a].shape, point.in_the_mean);
-    return f.slip != 0. || (f.stick != 0. && point.n_nodes > 1) ? f.contact : 0.;
+    return f.slip != 0. || (f.stick != 0. && (point.n_nodes > 1 || point.elastic_slip > 0.)) ? f.contact : 0.;
   }
 } // namespace Nodus

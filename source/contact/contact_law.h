@@ -32,10 +32,11 @@ namespace Nodus
   struct LawNode
   {
     LawStatus             status;
-    LawFrame              frame;  ///< of which the multipliers use the tangents
-    double                shape;  ///< phi
-    double                lambda; ///< < 0 in compression [pressure]
-    std::array<double, 2> Lambda; ///< along the tangents, friction traction over mu lambda_s
+    LawFrame              frame;        ///< of which the multipliers use the tangents
+    double                shape;        ///< phi
+    double                lambda;       ///< < 0 in compression [pressure]
+    std::array<double, 2> Lambda;       ///< along the tangents, friction traction over mu lambda_s
+    Vector3               elastic_slip; ///< as the increment began, in the scale of the slip [length]
   };
 
   /// A jump at a contact point, slave minus master.
@@ -60,6 +61,9 @@ namespace Nodus
     double                         threshold;               ///< mu lambda_s <= 0, at the point [pressure]
     double                         normal_augmentation;     ///< h_n > 0 (eq. Q1) [pressure/length]
     double                         tangential_augmentation; ///< h_tau > 0 of this threshold (eq. Q2) [1/length]
+    double overclosure  = 0.; ///< that the pressure-gap law gives at the pressure of the point (eq. C1) [length]
+    double compliance   = 0.; ///< its derivative with respect to the pressure [length/pressure]
+    double elastic_slip = 0.; ///< slip over which friction reaches its limit (eq. F4) [length]
     /// Regularised: the pressure of contact is lambda - h_n d_n, and friction takes the projection on the unit ball
     /// whether it sticks or slips (eq. F3).
     bool in_the_mean = false;
@@ -96,7 +100,7 @@ namespace Nodus
     /// The derivative of the residual of the last point that asked for it with respect to its threshold (eq. T3, T4);
     /// h_tau goes with 1/threshold. Where the point has one node, the threshold is a factor of its whole friction law
     /// rows, and the derivative of that factor is left out. There friction that sticks has no derivative, because its
-    /// traction mu lambda_s Lambda is kept when the threshold moves.
+    /// traction mu lambda_s Lambda is kept when the threshold moves; with elastic slip it is Lambda that is kept.
     alignas(64) std::array<double, max_unknowns> by_threshold;
   };
 

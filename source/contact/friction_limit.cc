@@ -10,8 +10,8 @@ namespace Nodus
 {
   namespace
   {
-    using ContactLaw  = ContactPairParameters::ContactLaw;
-    using FrictionLaw = ContactPairParameters::FrictionLaw;
+    using ContactLaw = ContactPairParameters::ContactLaw;
+    using Friction   = ContactPairParameters::FrictionLaw;
   } // namespace
 
   FrictionLimit::FrictionLimit(const ContactPairParameters &pair, const double stiffness)
@@ -29,14 +29,17 @@ namespace Nodus
 
   bool FrictionLimit::exists() const
   {
-    return pair_.contact_law == ContactLaw::tied || pair_.friction_law == FrictionLaw::tresca ||
+    return pair_.contact_law == ContactLaw::tied || own_law() != nullptr || pair_.friction_law == Friction::tresca ||
            pair_.friction_coefficient > 0.;
   }
 
   bool FrictionLimit::follows_pressure() const
   {
-    return pair_.contact_law != ContactLaw::tied && pair_.friction_law == FrictionLaw::coulomb &&
-           pair_.friction_coefficient > 0.;
+    if (pair_.contact_law == ContactLaw::tied)
+      return false;
+    if (own_law() != nullptr)
+      return own_law()->follows_pressure();
+    return pair_.friction_law == Friction::coulomb && pair_.friction_coefficient > 0.;
   }
 
   double FrictionLimit::factor(const Point &X, const double rate) const
@@ -47,23 +50,39 @@ namespace Nodus
     return factor_->value(X);
   }
 
-  double FrictionLimit::threshold(const double lambda, const double factor) const
+  double FrictionLimit::pressure(const double lambda) const
+  {
+    // a bilateral contact rubs in tension, too
+    return pair_.contact_law == ContactLaw::bilateral ? std::abs(lambda) : std::max(-lambda, 0.);
+  }
+
+  double FrictionLimit::threshold(const double lambda, const double factor, const FrictionPoint &point) const
   {
     if (pair_.contact_law == ContactLaw::tied)
       return -stiffness_;
-    if (pair_.friction_law == FrictionLaw::tresca)
+    double limit;
+    if (own_law() != nullptr)
+    {
+      FrictionPoint at = point;
+      at.pressure      = pressure(lambda);
+      limit            = own_law()->limit(at);
+    }
+    else if (pair_.friction_law == Friction::tresca)
       return -factor * pair_.shear_limit;
-    // a bilateral contact rubs in tension, too
-    const double pressure = pair_.contact_law == ContactLaw::bilateral ? std::abs(lambda) : std::max(-lambda, 0.);
-    const double limit    = factor * pair_.friction_coefficient * pressure;
+    else
+      limit = factor * pair_.friction_coefficient * pressure(lambda);
     return pair_.shear_limit > 0. ? -std::min(limit, pair_.shear_limit) : -limit;
   }
 
-  double FrictionLimit::slope(const double lambda, const double factor) const
+  double FrictionLimit::slope(const double lambda, const double factor, const FrictionPoint &point) const
   {
-    const double limit = threshold(lambda, factor);
-    if (!follows_pressure() || limit == 0. || (pair_.shear_limit > 0. && -limit >= pair_.shear_limit))
+    const double limit = threshold(lambda, factor, point);
+    if (!follows_pressure() || lambda == 0. || (pair_.shear_limit > 0. && -limit >= pair_.shear_limit))
       return 0.;
-    return limit / lambda;
+    if (own_law() == nullptr)
+      return limit / lambda;
+    FrictionPoint at = point;
+    at.pressure      = pressure(lambda);
+    return at.pressure > 0. ? (lambda < 0. ? 1. : -1.) * own_law()->limit_by_pressure(at) : 0.;
   }
 } // namespace Nodus

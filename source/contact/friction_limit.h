@@ -3,6 +3,7 @@
 
 #include <nodus/base/types.h>
 #include <nodus/parameters/parameters.h>
+#include <nodus/plugins/friction_law.h>
 
 #include <memory>
 
@@ -18,7 +19,8 @@ namespace Nodus
   ///
   /// - Coulomb: f mu |lambda|, at most the shear limit where there is one;
   /// - Tresca: f times the shear limit, whatever the pressure;
-  /// - tied: no bound. Lambda is the traction over the stiffness given, which is its scale and nothing else.
+  /// - tied: no bound. Lambda is the traction over the stiffness given, which is its scale and nothing else;
+  /// - a law of the user's: what that says, at most the shear limit where there is one.
   ///
   /// The friction factor f is an expression of the reference position and of the slip rate.
   class FrictionLimit
@@ -34,17 +36,26 @@ namespace Nodus
     bool follows_pressure() const;
     bool varies() const
     {
-      return factor_ != nullptr;
+      return factor_ != nullptr || own_law() != nullptr;
     }
 
     /// f at reference position @p X and slip rate @p rate [length/time].
     double factor(const Point &X, double rate) const;
 
+    /// The law of the user's, or null.
+    const FrictionLaw *own_law() const
+    {
+      return pair_.own_friction_law.get();
+    }
+
     /// mu lambda_s <= 0: minus the limit [pressure], and its derivative with respect to @p lambda (eqs. F1 and F2).
-    double threshold(double lambda, double factor) const;
-    double slope(double lambda, double factor) const;
+    /// @p factor: f at the site; @p point: what a law of the user's asks for, whose pressure is set here.
+    double threshold(double lambda, double factor, const FrictionPoint &point) const;
+    double slope(double lambda, double factor, const FrictionPoint &point) const;
 
   private:
+    double pressure(double lambda) const;
+
     const ContactPairParameters                 &pair_;
     double                                       stiffness_;
     std::unique_ptr<dealii::FunctionParser<dim>> factor_; ///< null: 1 everywhere

@@ -51,7 +51,8 @@ namespace Nodus
     note_friction();
     now_.threshold = thresholds_at(site_pressure);
     for (unsigned int k = 0; k < site_pressure.size(); ++k)
-      threshold_slope_[k] = limits_[surfaces_.pair(k)].slope(site_pressure[k], now_.friction_factor[k]);
+      threshold_slope_[k] =
+          limits_[surfaces_.pair(k)].slope(site_pressure[k], now_.friction_factor[k], friction_point(k));
     update_floor();
   }
 
@@ -59,7 +60,8 @@ namespace Nodus
   {
     std::vector<double> thresholds;
     for (unsigned int k = 0; k < site_pressure.size(); ++k)
-      thresholds.push_back(limits_[surfaces_.pair(k)].threshold(site_pressure[k], now_.friction_factor[k]));
+      thresholds.push_back(
+          limits_[surfaces_.pair(k)].threshold(site_pressure[k], now_.friction_factor[k], friction_point(k)));
     return thresholds;
   }
 
@@ -73,22 +75,72 @@ namespace Nodus
     update_floor();
   }
 
-  void Status::set_slip_rates(const std::vector<double> &rate)
+  void Status::set_slips(const std::vector<std::array<double, 2>> &slip, const double duration)
   {
     std::ostringstream problem;
-    for (unsigned int k = 0; k < rate.size() && problem.str().empty(); ++k)
+    for (unsigned int k = 0; k < slip.size() && problem.str().empty(); ++k)
       if (surfaces_.is_owned(k))
       {
-        const Point X      = surfaces_.site_position(k);
-        double     &factor = now_.friction_factor[k];
-        factor             = limits_[surfaces_.pair(k)].factor(X, rate[k]);
-        if (!(factor >= 0. && std::isfinite(factor)))
-          problem << "'Friction factor = " << pairs_[surfaces_.pair(k)].friction_factor << "' of "
-                  << pair_label(pairs_, surfaces_.pair(k)) << " is " << factor << " at (" << X << ") for the slip rate "
-                  << rate[k] << "; it must be >= 0 everywhere";
+        const Point          X     = surfaces_.site_position(k);
+        const FrictionLimit &limit = limits_[surfaces_.pair(k)];
+        now_.slip_rate[k]          = std::hypot(slip[k][0], slip[k][1]) / duration;
+        slip_length_[k]            = std::hypot(now_.slip[k][0] + slip[k][0], now_.slip[k][1] + slip[k][1]);
+        double &factor             = now_.friction_factor[k];
+        factor                     = limit.factor(X, now_.slip_rate[k]);
+        // any pressure does to find a law that is none
+        const double radius = limit.own_law() ? -limit.threshold(-1., 1., friction_point(k)) : factor;
+        if (!(radius >= 0. && std::isfinite(radius)))
+          problem << (limit.own_law() ? std::string("the friction law")
+                                      : "'Friction factor = " + pairs_[surfaces_.pair(k)].friction_factor + "'")
+                  << " of " << pair_label(pairs_, surfaces_.pair(k)) << " is " << radius << " at (" << X
+                  << ") for the slip rate " << now_.slip_rate[k] << "; it must be >= 0 everywhere";
       }
     throw_everywhere<InputError>(problem.str(), surfaces_.layout().communicator);
     surfaces_.site_exchange().update(now_.friction_factor);
+    surfaces_.site_exchange().update(now_.slip_rate);
+    surfaces_.site_exchange().update(slip_length_);
+  }
+
+  /// With the state that the increment begins with; the pressure is FrictionLimit's to set.
+  FrictionPoint Status::friction_point(const unsigned int site) const
+  {
+    FrictionPoint point;
+    if (limits_[surfaces_.pair(site)].own_law() == nullptr)
+      return point;
+    point.X     = surfaces_.site_position(site);
+    point.slip  = slip_length_[site];
+    point.rate  = now_.slip_rate[site];
+    point.state = now_.friction_state[site];
+    return point;
+  }
+
+  void Status::add_slip(const std::vector<std::array<double, 2>> &slip,
+                        const double                              duration,
+                        const std::vector<double>                &pressure)
+  {
+    for (unsigned int k = 0; k < slip.size(); ++k)
+    {
+      if (!now_.contact[k])
+        continue;
+      for (unsigned int i = 0; i < 2; ++i)
+        now_.slip[k][i] += slip[k][i];
+      if (const FrictionLaw *const law = limits_[surfaces_.pair(k)].own_law())
+      {
+        FrictionPoint point    = friction_point(k);
+        point.slip             = std::hypot(now_.slip[k][0], now_.slip[k][1]);
+        point.rate             = duration > 0. ? std::hypot(slip[k][0], slip[k][1]) / duration : 0.;
+        point.pressure         = std::abs(pressure[k]);
+        now_.friction_state[k] = law->next_state(point, duration);
+      }
+    }
+    surfaces_.site_exchange().update(now_.friction_state);
+  }
+
+  void Status::resume()
+  {
+    for (unsigned int k = 0; k < slip_length_.size(); ++k)
+      slip_length_[k] = std::hypot(now_.slip[k][0], now_.slip[k][1]);
+    update_floor();
   }
 
   void Status::update_floor()

@@ -105,6 +105,10 @@ namespace Nodus
     const Eigen::RowVectorXd gap = gap_variation(site, state, variation);
     for (const auto &[k, coefficient] : gap_rows_[site])
       couplings.add_gap(k, variation.columns(), coefficient * gap);
+    if (const double compliance = closure_at(status_.pressure_gap_law(site), state.lambda[site]).compliance;
+        compliance > 0. && weight_[site] > 0. && status_.contact(site)) // the pressure of a force that is kept
+      couplings.add_gap(
+          site, variation.columns(), compliance * state.lambda[site] * variation.rows().row(variation.area()));
     if (jump_.middle(site) != jump_.end(site))
       variation.balance(jump_, site, averages(site), pairing_[site], geometry_.slave[surfaces_.pair(site)].positions());
     couple(site, state, residual, law(site, state, residual, follows), variation, couplings);
@@ -252,6 +256,33 @@ namespace Nodus
     return result;
   }
 
+  namespace
+  {
+    /// The part of @p v along the tangents that carry friction.
+    Vector3 in_plane(const SitePairing &frame, const Vector3 &v)
+    {
+      Vector3 result;
+      for (unsigned int i = 0; i < 2; ++i)
+        if (frame.tangent_free[i])
+          result += (v * frame.tangent[i]) * frame.tangent[i];
+      return result;
+    }
+
+    /// How the sum of scale_i (v . t_i) t_i follows the normal, with which the tangents turn (eq. G14).
+    dealii::Tensor<2, dim> turning(const SitePairing                           &frame,
+                                   const std::array<double, 2>                 &scale,
+                                   const std::array<dealii::Tensor<2, dim>, 2> &turn,
+                                   const Vector3                               &v)
+    {
+      dealii::Tensor<2, dim> result;
+      for (unsigned int i = 0; i < 2; ++i)
+        if (frame.tangent_free[i])
+          result +=
+              scale[i] * (dealii::outer_product(frame.tangent[i], v * turn[i]) + (v * frame.tangent[i]) * turn[i]);
+      return result;
+    }
+  } // namespace
+
   GeometryTangent::Law GeometryTangent::law(const unsigned int     site,
                                             const ContactState    &state,
                                             const ContactResidual &residual,
@@ -288,16 +319,10 @@ namespace Nodus
     if (frame.tangent_free[1])
       turned += dealii::outer_product(Lambda[1] * frame.tangent[0] - Lambda[0] * frame.tangent[1],
                                       frame.tangent[1] * turn[0]);
-    // the projector turns with the tangents
-    const auto projected = [&](const Vector3 &v)
-    {
-      Matrix3 result;
-      for (unsigned int i = 0; i < 2; ++i)
-        if (frame.tangent_free[i])
-          result += frame.friction_scale[i] *
-                    (dealii::outer_product(frame.tangent[i], v * turn[i]) + (v * frame.tangent[i]) * turn[i]);
-      return result;
-    };
+    const Vector3 &before    = state.elastic_slip[site]; // adds to the slip (eq. F4)
+    const double   elastic   = status_.elastic_slip(site);
+    const Vector3  memory    = in_plane(frame, before);
+    const auto     projected = [&](const Vector3 &v) { return turning(frame, frame.friction_scale, turn, v); };
 
     if (status_.stick(site))
     {
@@ -307,7 +332,9 @@ namespace Nodus
         if (frame.tangent_free[i])
         {
           law.row_slip[i]   = -factor * frame.friction_scale[i] * frame.tangent[i];
-          law.row_normal[i] = -factor * frame.friction_scale[i] * (jump * turn[i]);
+          law.row_normal[i] = -factor * (frame.friction_scale[i] * (jump * turn[i]) + before * turn[i]);
+          if (elastic > 0. && frame.tangent_free[1 - i]) // components that are carried over with the frame
+            law.row_normal[i] += factor * elastic * (i == 0 ? 1. : -1.) * Lambda[1 - i] * (frame.tangent[1] * turn[0]);
         }
       return;
     }
@@ -318,7 +345,7 @@ namespace Nodus
     Matrix3      K_B;
     if (!held)
     {
-      const Vector3 w    = direction + h * (projector * jump);
+      const Vector3 w    = direction + h * (projector * jump + memory);
       const double  norm = w.norm();
       K_B                = identity();
       pi                 = w;
@@ -329,9 +356,10 @@ namespace Nodus
       }
     }
     // pi follows Lambda, the slip and h, which is inverse to the threshold
-    const Matrix3 by_normal = held ? turned : Matrix3(K_B * (turned + h * projected(jump)));
-    const Matrix3 by_slip   = h * K_B * projector;
-    const Vector3 by_area   = h * followed / (threshold * area) * (K_B * (projector * jump));
+    const Matrix3 by_normal =
+        held ? turned : Matrix3(K_B * (turned + h * (projected(jump) + turning(frame, {{1., 1.}}, turn, before))));
+    const Matrix3 by_slip = h * K_B * projector;
+    const Vector3 by_area = h * followed / (threshold * area) * (K_B * (projector * jump + memory));
     law.force_normal -= factor * (projected(pi) + projector * by_normal);
     law.force_slip = -factor * projector * by_slip;
     law.force_area = -(threshold - followed) * (projector * pi) - factor * (projector * by_area);

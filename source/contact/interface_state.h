@@ -15,7 +15,9 @@ namespace Nodus
   {
     Status::State                       statuses;
     std::vector<std::array<Vector3, 2>> tangents; ///< per slave node: the frame that its Lambda refers to
-    std::vector<double> area; ///< per slave node: m_j that its lambda refers to; 0: lambda is a pressure [area]
+    /// Per slave node, in space and in the scale of the slip (eq. F4), as the increment begins [length].
+    std::vector<Vector3> elastic_slip;
+    std::vector<double>  area; ///< per slave node: m_j that its lambda refers to; 0: lambda is a pressure [area]
     /// As the increment begins, per site and right at owned ones: force on the slave and jump of the displacement.
     std::vector<Vector3> force, jump;
 

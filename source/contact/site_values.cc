@@ -24,19 +24,22 @@ namespace Nodus
       return values;
     }
 
-    std::vector<std::array<double, 2>> site_friction(const ContactSurfaces &surfaces,
-                                                     const Pairing         &pairing,
-                                                     const SurfaceWeights  &weights,
-                                                     const Status          &status,
-                                                     const ContactState    &state)
+    using Components = std::vector<std::array<double, 2>>;
+
+    /// A field of tangent vectors at the slave nodes, at all sites.
+    Components site_friction(const ContactSurfaces &surfaces,
+                             const Pairing         &pairing,
+                             const SurfaceWeights  &weights,
+                             const Status          &status,
+                             const Components      &nodal)
     {
       // Nodes compare components in their own frames, as their weights do; points compare vectors in space.
-      std::vector<std::array<double, 2>> result(surfaces.n_sites(), {{0., 0.}});
-      std::vector<double>                component(state.Lambda.size());
+      Components          result(surfaces.n_sites(), {{0., 0.}});
+      std::vector<double> component(nodal.size());
       for (unsigned int i = 0; i < 2; ++i)
       {
         for (unsigned int k = 0; k < component.size(); ++k)
-          component[k] = status.friction(k) ? state.Lambda[k][i] : 0.;
+          component[k] = status.friction(k) ? nodal[k][i] : 0.;
         component = weights.weighted(component);
         for (unsigned int k = 0; k < component.size(); ++k)
           result[k][i] = component[k];
@@ -47,11 +50,22 @@ namespace Nodus
           Vector3 Lambda;
           for (unsigned int a = 0; a < point.slaves.size(); ++a)
             for (unsigned int i = 0; i < 2; ++i)
-              Lambda += point.shape[a] * state.Lambda[point.slaves[a]][i] * pairing[point.slaves[a]].tangent[i];
+              Lambda += point.shape[a] * nodal[point.slaves[a]][i] * pairing[point.slaves[a]].tangent[i];
           for (unsigned int i = 0; i < 2; ++i)
             result[point.site][i] = Lambda * pairing[point.site].tangent[i];
         }
       return result;
+    }
+    /// What the multipliers leave of the elastic slip that the increment began with (eq. F4), at the slave nodes.
+    Components released_slip(const Pairing &pairing, const Status &status, const ContactState &state)
+    {
+      Components released(state.Lambda.size(), {{0., 0.}});
+      for (unsigned int k = 0; k < released.size(); ++k)
+        if (const double length = status.elastic_slip(k); length > 0.)
+          for (unsigned int i = 0; i < 2; ++i)
+            if (pairing[k].tangent_free[i])
+              released[k][i] = state.elastic_slip[k] * pairing[k].tangent[i] - length * state.Lambda[k][i];
+      return released;
     }
   } // namespace
 
@@ -65,6 +79,20 @@ namespace Nodus
     return pressure;
   }
 
+  std::vector<double> site_overclosures(const ContactSurfaces     &surfaces,
+                                        const Status              &status,
+                                        const std::vector<double> &pressure,
+                                        const std::vector<double> &lambda)
+  {
+    std::vector<double> overclosures(surfaces.n_sites(), 0.);
+    for (unsigned int s = 0; s < overclosures.size(); ++s)
+    {
+      const double at_site = !status.contact(s) ? 0. : surfaces.is_point(s) ? pressure[s] : lambda[s];
+      overclosures[s]      = closure_at(status.pressure_gap_law(s), at_site).overclosure;
+    }
+    return overclosures;
+  }
+
   StatusInput status_input(const std::vector<ContactPairParameters> &pairs,
                            const ContactSurfaces                    &surfaces,
                            const Pairing                            &pairing,
@@ -76,22 +104,33 @@ namespace Nodus
     StatusInput input;
     input.pressure = site_pressure(surfaces, weights, status, state.lambda);
     if (status.has_friction())
-      input.Lambda = site_friction(surfaces, pairing, weights, status, state);
+      input.Lambda = site_friction(surfaces, pairing, weights, status, state.Lambda);
     else
       input.Lambda.assign(surfaces.n_sites(), {{0., 0.}});
+    const bool elastic =
+        std::any_of(pairs.begin(), pairs.end(), [](const auto &pair) { return pair.elastic_slip > 0.; });
+    const Components released = elastic ? released_slip(pairing, status, state) : Components();
+    const Components at_site  = elastic ? site_friction(surfaces, pairing, weights, status, released) : Components();
+    const std::vector<double> overclosures = site_overclosures(surfaces, status, input.pressure, state.lambda);
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
     {
-      if (!surfaces.is_point(s) && pairs[surfaces.pair(s)].status_test == ContactPairParameters::StatusTest::raw)
+      const bool raw =
+          !surfaces.is_point(s) && pairs[surfaces.pair(s)].status_test == ContactPairParameters::StatusTest::raw;
+      if (raw)
       {
         input.pressure[s] = status.contact(s) ? state.lambda[s] : 0.;
         input.Lambda[s]   = state.Lambda[s];
       }
       // without partner or status there is no distance: keep the test on the open side
       const bool tested = pairing[s].found && surfaces.has_status(s);
-      input.distance.push_back(tested ? assembler.distance(state, s) : 0.);
+      input.distance.push_back(tested ? assembler.distance(state, s) - overclosures[s] : 0.);
       input.slip.push_back(assembler.slip(state, s));
       for (unsigned int i = 0; i < 2; ++i)
+      {
         input.slip.back()[i] *= pairing[s].friction_scale[i];
+        if (elastic)
+          input.slip.back()[i] += raw ? released[s][i] : at_site[s][i];
+      }
       if (!tested)
         input.pressure[s] = 0.;
     }

@@ -15,6 +15,13 @@ namespace Nodus
                                     const Status              &status,
                                     const std::vector<double> &lambda);
 
+  /// Overclosure that pressure-gap laws give at every site, of the multipliers that the contact law has there, at open
+  /// ones that of pressure 0; 0 where contact is hard [length]. @p pressure: as site_pressure() gives it.
+  std::vector<double> site_overclosures(const ContactSurfaces     &surfaces,
+                                        const Status              &status,
+                                        const std::vector<double> &pressure,
+                                        const std::vector<double> &lambda);
+
   /// What the status tests look at (eq. S1). Friction as the pressure: at slave nodes the weighted mean of Lambda by
   /// components, of nodes with friction; at integration points Lambda interpolated in space. `Status test = raw` takes
   /// the nodal unknowns. Right at owned sites. Collective.

@@ -40,6 +40,7 @@ namespace Nodus
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
       limits_.emplace_back(pairs[p], stiffness[p]);
+      gap_laws_.push_back(make_pressure_gap_law(pairs[p]));
       // rho_n = factor E/h: the stiffness of a layer one slave face deep, of the softer material
       normal_augmentation_.push_back(pairs[p].normal_augmentation_factor * stiffness[p] / surfaces.face_size(p));
     }
@@ -50,6 +51,12 @@ namespace Nodus
     now_.slip.assign(n, {{0., 0.}});
     now_.adjustment.assign(n, 0.);
     now_.friction_factor.assign(n, 1.);
+    now_.slip_rate.assign(n, 0.);
+    now_.friction_state.assign(n, {});
+    for (unsigned int k = 0; k < n; ++k)
+      if (const FrictionLaw *const law = limits_[surfaces.pair(k)].own_law())
+        now_.friction_state[k] = law->initial_state();
+    slip_length_.assign(n, 0.);
   }
 
   double Status::closing_distance(const unsigned int pair) const
@@ -70,12 +77,14 @@ namespace Nodus
     {
       if (!surfaces_.has_status(k) || !pairing[k].found)
         continue;
-      const unsigned int p     = surfaces_.pair(k);
-      const auto        &pair  = pairs_[p];
-      const bool         lasts = pair.contact_law != ContactLaw::unilateral; // closed for good
-      const double       reach = closing_distance(p);
-      const bool         near = -distance[k] <= reach && (pair.contact_law != ContactLaw::tied || distance[k] <= reach);
-      now_.contact[k]         = pair.start.status == Initial::closed || (pair.start.status == Initial::by_gap && near);
+      const unsigned int p        = surfaces_.pair(k);
+      const auto        &pair     = pairs_[p];
+      const bool         lasts    = pair.contact_law != ContactLaw::unilateral; // closed for good
+      const double       reach    = closing_distance(p);
+      const double       touching = closure_at(gap_laws_[p].get(), 0.).overclosure;
+      const bool         near =
+          touching - distance[k] <= reach && (pair.contact_law != ContactLaw::tied || distance[k] <= reach);
+      now_.contact[k] = pair.start.status == Initial::closed || (pair.start.status == Initial::by_gap && near);
       if ((lasts && now_.contact[k]) || (pair.start.overclosure == Overclosure::adjust && near) ||
           (pair.start.overclosure == Overclosure::interference && distance[k] > 0.))
         now_.adjustment[k] = distance[k];
@@ -102,7 +111,7 @@ namespace Nodus
   bool Status::can_project(const unsigned int pair) const
   {
     return pairs_[pair].scheme == ContactPairParameters::Scheme::integration_point &&
-           pairs_[pair].contact_law == ContactLaw::unilateral;
+           pairs_[pair].contact_law == ContactLaw::unilateral && !gap_laws_[pair] && pairs_[pair].elastic_slip == 0.;
   }
 
   bool Status::can_lump(const unsigned int pair) const
@@ -230,12 +239,13 @@ namespace Nodus
     // can hold slips (eq. S3): eq. 7 with the threshold of the pressure that eq. 2 closes it with.
     const auto held = [&](const unsigned int k)
     {
-      const unsigned int p         = surfaces_.pair(k);
-      const double       value     = input.pressure[k] - normal_augmentation(k) * input.distance[k];
-      const double       threshold = limits_[p].threshold(value, now_.friction_factor[k]);
-      return pairs_[p].tangential_augmentation_factor * normal_augmentation(k) *
-                 std::hypot(input.slip[k][0], input.slip[k][1]) <=
-             -threshold;
+      const unsigned int p    = surfaces_.pair(k);
+      const double       slip = std::hypot(input.slip[k][0], input.slip[k][1]);
+      if (elastic_slip(k) > 0.)
+        return slip <= elastic_slip(k);
+      const double value     = input.pressure[k] - normal_augmentation(k) * input.distance[k];
+      const double threshold = limits_[p].threshold(value, now_.friction_factor[k], friction_point(k));
+      return pairs_[p].tangential_augmentation_factor * normal_augmentation(k) * slip <= -threshold;
     };
     for (unsigned int i = 0; i < result.sites.size(); ++i)
     {
@@ -324,13 +334,5 @@ namespace Nodus
     result.value = worst.max;
     result.sites = dealii::Utilities::MPI::sum(result.sites, communicator);
     return result;
-  }
-
-  void Status::add_slip(const std::vector<std::array<double, 2>> &slip)
-  {
-    for (unsigned int k = 0; k < slip.size(); ++k)
-      if (now_.contact[k])
-        for (unsigned int i = 0; i < 2; ++i)
-          now_.slip[k][i] += slip[k][i];
   }
 } // namespace Nodus

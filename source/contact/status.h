@@ -2,6 +2,7 @@
 #define nodus_contact_status_h
 
 #include "contact/friction_limit.h"
+#include "contact/pressure_gap.h"
 #include "contact/surface.h"
 #include <nodus/base/types.h>
 #include <nodus/parameters/parameters.h>
@@ -19,10 +20,10 @@ namespace Nodus
   struct StatusInput
   {
     std::vector<double>                pressure; ///< lambda_bar (weighted) or lambda (raw) [pressure]
-    std::vector<double>                distance; ///< d_n > 0 penetration [length]
+    std::vector<double>                distance; ///< d_n > 0 penetration, beyond what the pressure gives [length]
     std::vector<std::array<double, 2>> Lambda;   ///< friction semi-multiplier in the tangent frame
     std::vector<std::array<double, 2>> slip;     ///< tangential jump of the increment, scaled as
-                                                 ///< SitePairing::friction_scale says [length]
+                                                 ///< SitePairing::friction_scale says, beyond elastic slip [length]
   };
 
   /// Why a status changed: what contradicted it.
@@ -48,6 +49,7 @@ namespace Nodus
   class Status
   {
   public:
+    using FrictionState = std::array<double, FrictionPoint::max_state>;
     /// What the statuses hand on from one increment to the next, for all local sites.
     struct State
     {
@@ -56,6 +58,8 @@ namespace Nodus
       std::vector<std::array<double, 2>> slip;            ///< accumulated, in the tangent frame [length]
       std::vector<double>                adjustment;      ///< of d_n at the first pairing [length]
       std::vector<double>                friction_factor; ///< of the last slip rate
+      std::vector<double>                slip_rate;       ///< of the last iterate [length/time]
+      std::vector<FrictionState>         friction_state;  ///< of the user's friction law, as the increment begins
     };
 
     /// @p stiffness of each pair [pressure]; @p strategy: what is tried where statuses cycle. @p now outlives it, and
@@ -136,6 +140,16 @@ namespace Nodus
              std::max(-threshold, threshold_floor_[pair]);
     }
 
+    /// Of the site's pair: null where contact is hard; the slip over which friction reaches its limit [length].
+    const PressureGapLaw *pressure_gap_law(const unsigned int site) const
+    {
+      return gap_laws_[surfaces_.pair(site)].get();
+    }
+    double elastic_slip(const unsigned int site) const
+    {
+      return pairs_[surfaces_.pair(site)].elastic_slip;
+    }
+
     /// Gap up to which sites of a pair start closed [length].
     double closing_distance(unsigned int pair) const;
     /// First pairing of the run: by gap, closed or open, and what is adjusted. Collective.
@@ -181,9 +195,9 @@ namespace Nodus
     {
       return has(&FrictionLimit::varies);
     }
-    /// Slip rates of the owned sites [length/time], for the friction factors. @throws InputError on every rank where a
-    /// factor is not >= 0. Collective.
-    void set_slip_rates(const std::vector<double> &rate);
+    /// The @p slip of the owned sites in an increment of this @p duration, whose rates friction factors and the laws of
+    /// users depend on. @throws InputError on every rank where a factor or a limit is not >= 0. Collective.
+    void set_slips(const std::vector<std::array<double, 2>> &slip, double duration);
     /// Part of the interference of fits that is pressed out by now, 0 to 1.
     void set_resolved_interference(const double part)
     {
@@ -247,10 +261,7 @@ namespace Nodus
     std::vector<char> code() const;
 
     /// The state that it refers to has been set to another one: what follows from it is found anew. Collective.
-    void resume()
-    {
-      update_floor();
-    }
+    void resume();
 
     /// Empties the ledger, at the start of an increment.
     void                begin_increment();
@@ -263,8 +274,9 @@ namespace Nodus
       return now_.slip[site];
     }
 
-    /// Adds the slip of the increment at closed sites, right at owned ones.
-    void add_slip(const std::vector<std::array<double, 2>> &slip);
+    /// Adds the slip of the increment at closed sites, right at owned ones, and what it does to the state of friction.
+    /// Collective.
+    void add_slip(const std::vector<std::array<double, 2>> &slip, double duration, const std::vector<double> &pressure);
 
   private:
     bool has(bool (FrictionLimit::*property)() const) const
@@ -272,7 +284,8 @@ namespace Nodus
       return std::any_of(
           limits_.begin(), limits_.end(), [&](const FrictionLimit &limit) { return (limit.*property)(); });
     }
-    bool interferes(const unsigned int pair) const
+    FrictionPoint friction_point(unsigned int site) const;
+    bool          interferes(const unsigned int pair) const
     {
       return pairs_[pair].start.overclosure == ContactPairParameters::InitialOverclosure::interference;
     }
@@ -287,24 +300,26 @@ namespace Nodus
     Violation           violation(const StatusInput &input, const std::vector<char> &sites) const;
     void                find_period(Update &update);
 
-    const std::vector<ContactPairParameters> &pairs_;
-    const ContactSurfaces                    &surfaces_;
-    const StrategyParameters                 &strategy_;
-    std::vector<double>                       normal_augmentation_;
-    std::vector<FrictionLimit>                limits_; ///< of the pairs
-    State                                    &now_;
-    std::vector<double>                       threshold_slope_; ///< of the sites
-    std::vector<double>                       threshold_floor_; ///< of the pairs
-    double                                    resolved_ = 0.;
-    std::vector<StatusLedger>                 ledger_;
-    std::vector<std::vector<char>>            visited_;
-    std::vector<char>                         opened_;       ///< in this status loop
-    std::vector<char>                         frozen_;       ///< in this status loop
-    std::vector<char>                         had_friction_; ///< at the last test: the iterate knows of friction there
-    bool                                      merged_      = false;
-    bool                                      regularised_ = false; ///< in this attempt at the increment
-    bool                                      hold_        = false;
-    unsigned int                              returns_     = 0; ///< to a visited vector, in this loop
+    const std::vector<ContactPairParameters>          &pairs_;
+    const ContactSurfaces                             &surfaces_;
+    const StrategyParameters                          &strategy_;
+    std::vector<double>                                normal_augmentation_;
+    std::vector<FrictionLimit>                         limits_; ///< of the pairs
+    std::vector<std::shared_ptr<const PressureGapLaw>> gap_laws_;
+    State                                             &now_;
+    std::vector<double>                                threshold_slope_; ///< of the sites
+    std::vector<double>                                slip_length_; ///< of the sites, accumulated up to the iterate
+    std::vector<double>                                threshold_floor_; ///< of the pairs
+    double                                             resolved_ = 0.;
+    std::vector<StatusLedger>                          ledger_;
+    std::vector<std::vector<char>>                     visited_;
+    std::vector<char>                                  opened_; ///< in this status loop
+    std::vector<char>                                  frozen_; ///< in this status loop
+    std::vector<char> had_friction_; ///< at the last test: the iterate knows of friction there
+    bool              merged_      = false;
+    bool              regularised_ = false; ///< in this attempt at the increment
+    bool              hold_        = false;
+    unsigned int      returns_     = 0; ///< to a visited vector, in this loop
   };
 } // namespace Nodus
 

@@ -90,6 +90,8 @@ namespace Nodus
                     const std::string          &centre);
 
     void add_contact_pair(ParameterHandler &prm, ContactPairParameters &pair);
+    /// What its surfaces do once closed, how they give way, and how they rub.
+    void add_contact_laws(ParameterHandler &prm, ContactPairParameters &pair);
     /// The subsections on how the case is solved, from "Geometry loop" to "Adaptivity".
     void add_solution(ParameterHandler &prm, Parameters &parameters);
   } // namespace ParameterKeys

@@ -106,12 +106,47 @@ namespace Nodus
       section.require(second || !direction,
                       "Friction direction",
                       "has no effect without a Second friction coefficient; remove it or give that");
+      section.require(pair.elastic_slip == 0. || coulomb ||
+                          pair.friction_law == ContactPairParameters::FrictionLaw::tresca,
+                      "Elastic slip",
+                      "has no effect without friction; give a Friction coefficient");
       const bool factor = pair.friction_factor != "1";
       section.require(!factor || coulomb || pair.friction_law == ContactPairParameters::FrictionLaw::tresca,
                       "Friction factor",
                       "has no effect without friction; give a Friction coefficient");
       if (factor)
         check_expression(section, "Friction factor", pair.friction_factor, "x,y,z,v");
+    }
+
+    void check_gap_law(const Section &section, const ContactPairParameters &pair)
+    {
+      using Law                        = PressureGapParameters::Law;
+      const PressureGapParameters &gap = pair.pressure_gap;
+      section.require(gap.law == Law::hard || pair.contact_law != ContactPairParameters::ContactLaw::tied,
+                      "Pressure-gap law",
+                      "has no effect on a tied pair; remove it");
+      const std::string law = "'Pressure-gap law = " + text_of(gap.law) + "'";
+      for (const auto &[key, given, used] :
+           {std::make_tuple(
+                "Contact stiffness", gap.stiffness > 0., gap.law == Law::linear || gap.law == Law::exponential),
+            std::make_tuple("Stiffening length", gap.stiffening_length > 0., gap.law == Law::exponential),
+            std::make_tuple("Gap law overclosures", !gap.overclosures.empty(), gap.law == Law::table),
+            std::make_tuple("Gap law pressures", !gap.pressures.empty(), gap.law == Law::table)})
+      {
+        section.require(given || !used, key, "is missing; " + law + " needs it");
+        section.require(used || !given, key, "has no effect on " + law + "; remove it");
+      }
+      if (gap.law != Law::table)
+        return;
+      section.require(gap.pressures.size() == gap.overclosures.size() && gap.pressures.size() >= 2,
+                      "Gap law pressures",
+                      "needs as many numbers as Gap law overclosures has, at least 2");
+      section.require(gap.pressures[0] == 0., "Gap law pressures", "begins with 0, where surfaces begin to touch");
+      for (unsigned int i = 1; i < gap.pressures.size(); ++i)
+      {
+        section.require(gap.pressures[i] > gap.pressures[i - 1], "Gap law pressures", "has to increase");
+        section.require(gap.overclosures[i] >= gap.overclosures[i - 1], "Gap law overclosures", "must not decrease");
+      }
     }
 
     void check_master(const Section &section, const ContactPairParameters &pair, const unsigned int n_bodies)
@@ -175,6 +210,7 @@ namespace Nodus
   void ParameterChecks::check(const Section &section, const ContactPairParameters &pair, const unsigned int n_bodies)
   {
     check_friction(section, pair);
+    check_gap_law(section, pair);
     const bool adjusts = pair.contact_law != ContactPairParameters::ContactLaw::unilateral ||
                          pair.start.overclosure == ContactPairParameters::InitialOverclosure::adjust;
     section.require(adjusts || pair.start.adjustment_distance == 0.,

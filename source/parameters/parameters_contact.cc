@@ -52,15 +52,6 @@ namespace Nodus
         {ContactPairParameters::InitialStatus::closed, "closed"},
         {ContactPairParameters::InitialStatus::open, "open"}};
 
-    const Names<ContactPairParameters::ContactLaw> contact_law_names = {
-        {ContactPairParameters::ContactLaw::unilateral, "unilateral"},
-        {ContactPairParameters::ContactLaw::bilateral, "bilateral"},
-        {ContactPairParameters::ContactLaw::tied, "tied"}};
-
-    const Names<ContactPairParameters::FrictionLaw> friction_law_names = {
-        {ContactPairParameters::FrictionLaw::coulomb, "Coulomb"},
-        {ContactPairParameters::FrictionLaw::tresca, "Tresca"}};
-
     const Names<ContactPairParameters::InitialOverclosure> overclosure_names = {
         {ContactPairParameters::InitialOverclosure::resolve, "resolve in the first increment"},
         {ContactPairParameters::InitialOverclosure::adjust, "strain-free adjust"},
@@ -83,11 +74,6 @@ namespace Nodus
   std::string text_of(const ContactPairParameters::Integration integration)
   {
     return text_of(integration, integration_names);
-  }
-
-  std::string text_of(const ContactPairParameters::ContactLaw law)
-  {
-    return text_of(law, contact_law_names);
   }
 
   std::string text_of(const ContactPairParameters::Surface surface)
@@ -216,45 +202,6 @@ namespace Nodus
                         Patterns::Integer(0, 20));
     }
 
-    /// What the surfaces do once closed, and how they rub.
-    void add_laws(ParameterHandler &prm, ContactPairParameters &pair)
-    {
-      add_choice(prm,
-                 "Contact law",
-                 pair.contact_law,
-                 contact_law_names,
-                 "What the surfaces do once closed [-]: push only, or never open again but slide, or stay tied where "
-                 "they start.");
-      add_choice(prm,
-                 "Friction law",
-                 pair.friction_law,
-                 friction_law_names,
-                 "Limit of the friction traction [-]: friction coefficient times pressure, or the shear limit.");
-      prm.add_parameter("Friction coefficient",
-                        pair.friction_coefficient,
-                        "Coulomb's coefficient [-]; 0: no friction.",
-                        not_negative);
-      prm.add_parameter("Second friction coefficient",
-                        pair.second_friction_coefficient,
-                        "Of orthotropic friction, across the friction direction [-]; 0: as the first one. The limits "
-                        "are the half axes of an ellipse, and slip is normal to it.",
-                        not_negative);
-      prm.add_parameter("Friction direction",
-                        pair.friction_direction,
-                        "Of orthotropic friction: direction in space of the first coefficient, projected on the "
-                        "surface [-]; three numbers.");
-      prm.add_parameter("Friction factor",
-                        pair.friction_factor,
-                        "Factor on the friction coefficients, of Tresca on the shear limit [-]: expression of the "
-                        "reference coordinates x, y, z [length] and of the slip rate v [length/time], e.g. "
-                        "0.6+0.4*exp(-v/10). The slip rate is the slip of the increment over its time.",
-                        Patterns::Anything());
-      prm.add_parameter("Shear limit",
-                        pair.shear_limit,
-                        "Friction tractions do not exceed this [pressure]; 0: no limit (Coulomb).",
-                        not_negative);
-    }
-
     /// Scales of gaps and slips against tractions: they steer the iteration alone.
     void add_augmentation(ParameterHandler &prm, ContactPairParameters &pair)
     {
@@ -343,7 +290,7 @@ namespace Nodus
     add_region(prm, "Master ", pair.master, " that the slave nodes are projected onto", where);
     add_master_surface(prm, pair.master_surface);
     add_scheme(prm, pair);
-    add_laws(prm, pair);
+    add_contact_laws(prm, pair);
     add_augmentation(prm, pair);
     add_surface_treatment(prm, pair);
     add_search(prm, pair);

@@ -1,4 +1,5 @@
 #include "run/judge.h"
+#include "contact/site_values.h"
 #include "mesh/sides.h"
 #include "parallel/largest.h"
 #include "run/body_balance.h"
@@ -276,8 +277,10 @@ namespace Nodus
   /// there, which is right as long as the sides do not meet, or do not slide.
   void Judge::measure_held(Verdict &verdict) const
   {
-    const ContactSurfaces &surfaces = contact_->surfaces();
-    Status::Violation      depth, slip; // their counts are not used
+    const ContactSurfaces    &surfaces = contact_->surfaces();
+    Status::Violation         depth, slip; // their counts are not used
+    const std::vector<double> overclosures =
+        site_overclosures(surfaces, contact_->status(), contact_->pressure(), contact_->state().lambda);
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
     {
       const SitePairing &pairing = contact_->pairing()[s];
@@ -294,7 +297,7 @@ namespace Nodus
         }
       };
       if (pairing.held)
-        raise(depth, contact_->distance(s)); // > 0: inside
+        raise(depth, contact_->distance(s) - overclosures[s]); // > 0: inside
       else if (pairing.found && contact_->status().contact(s) && contact_->status().friction(s))
         for (unsigned int i = 0; i < 2; ++i)
           if (!pairing.tangent_free[i])
@@ -321,10 +324,12 @@ namespace Nodus
     std::vector<double> adjusted(surfaces.n_pairs(), 0.), tolerated; // where surfaces are apart or inside by intent
     std::vector<double> bulge;                                       // that faces of the larger size cut off
     std::vector<unsigned int> closed(surfaces.n_pairs(), 0);
+    const std::vector<double> overclosures =
+        site_overclosures(surfaces, contact_->status(), contact_->pressure(), contact_->state().lambda);
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
     {
       const unsigned int p = surfaces.pair(s);
-      adjusted[p]          = std::max(adjusted[p], std::abs(contact_->status().adjustment(s)));
+      adjusted[p] = std::max(adjusted[p], std::abs(contact_->status().adjustment(s)) + std::max(overclosures[s], 0.));
       closed[p] += surfaces.is_owned(s) && surfaces.has_status(s) && contact_->status().contact(s);
     }
     dealii::Utilities::MPI::max(adjusted, model_.communicator, adjusted);

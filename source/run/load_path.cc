@@ -186,7 +186,7 @@ namespace Nodus
     now.history  = model.solid->reached();
     model.solid->start_from(now.history);
     audit_.account();
-    model.contact->end_increment();
+    model.contact->end_increment(parts_.equilibrium.increment().duration());
     model.rigid_bodies.end_increment(parts_.equilibrium.driven().applied());
     if (parts_.equilibrium.increment().ends_interval)
       now.reaction = parts_.equilibrium.reactions();

@@ -52,21 +52,24 @@ namespace Nodus
     visitor.common(energies);
     visitor.common(stiffness_scale);
 
-    auto &[statuses, tangents, area, force, jump, on_new_mesh, stuck] = contact;
+    auto &[statuses, tangents, elastic_slip, area, force, jump, on_new_mesh, stuck] = contact;
     visitor.slaves(tangents);
+    visitor.slaves(elastic_slip);
     visitor.slaves(area);
     visitor.sites(force);
     visitor.sites(jump);
     visitor.common(on_new_mesh);
     visitor.sites(stuck);
 
-    auto &[closed, stick, threshold, slip, adjustment, friction_factor] = statuses;
+    auto &[closed, stick, threshold, slip, adjustment, friction_factor, slip_rate, friction_state] = statuses;
     visitor.sites(closed);
     visitor.sites(stick);
     visitor.sites(threshold);
     visitor.sites(slip);
     visitor.sites(adjustment);
     visitor.sites(friction_factor);
+    visitor.sites(slip_rate);
+    visitor.sites(friction_state);
   }
 } // namespace Nodus
 

@@ -21,9 +21,10 @@ namespace Nodus
     {
       return 1;
     }
-    constexpr unsigned int width(const std::array<double, 2> *)
+    template <std::size_t n>
+    constexpr unsigned int width(const std::array<double, n> *)
     {
-      return 2;
+      return n;
     }
     constexpr unsigned int width(const Vector3 *)
     {
@@ -44,7 +45,8 @@ namespace Nodus
       *to = value;
       return to + 1;
     }
-    inline double *write(const std::array<double, 2> &value, double *to)
+    template <std::size_t n>
+    double *write(const std::array<double, n> &value, double *to)
     {
       return std::copy(value.begin(), value.end(), to);
     }
@@ -69,10 +71,11 @@ namespace Nodus
       value = *from;
       return from + 1;
     }
-    inline const double *read(const double *from, std::array<double, 2> &value)
+    template <std::size_t n>
+    const double *read(const double *from, std::array<double, n> &value)
     {
-      std::copy_n(from, 2, value.begin());
-      return from + 2;
+      std::copy_n(from, n, value.begin());
+      return from + n;
     }
     inline const double *read(const double *from, Vector3 &value)
     {

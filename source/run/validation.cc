@@ -159,6 +159,10 @@ namespace Nodus
         text << "no friction";
       if (pair.friction_factor != "1")
         text << ", times " << pair.friction_factor;
+      if (pair.elastic_slip > 0.)
+        text << " over an elastic slip of " << pair.elastic_slip;
+      if (pair.pressure_gap.law != PressureGapParameters::Law::hard)
+        text << ", " << text_of(pair.pressure_gap.law) << " pressure-gap law";
       return text.str();
     }
 

@@ -42,19 +42,25 @@ int main(int argc, char **argv)
     Weights                            weights;
     ContactPairParameters::Integration integration;
     ContactPairParameters::Surface     surface;
+    bool                               gives_way = false; ///< a pressure-gap law and elastic slip
   };
   const auto face = ContactPairParameters::Integration::face, segment = ContactPairParameters::Integration::segment;
   const auto faceted = ContactPairParameters::Surface::faceted, smoothed = ContactPairParameters::Surface::smoothed;
-  const Kind kinds[] = {{"nodal quadrature", Scheme::nodal, Weights::nodal_quadrature, face, faceted},
-                        {"dual", Scheme::nodal, Weights::dual, face, smoothed},
-                        {"consistent", Scheme::nodal, Weights::consistent, face, faceted},
-                        {"averaged, face", Scheme::averaged, Weights::dual, face, faceted},
-                        {"averaged, segment", Scheme::averaged, Weights::dual, segment, smoothed},
-                        {"integration point", Scheme::integration_point, Weights::dual, face, smoothed},
-                        {"integration point, regularised", Scheme::integration_point, Weights::dual, face, smoothed}};
+  const Kind kinds[] = {
+      {"nodal quadrature", Scheme::nodal, Weights::nodal_quadrature, face, faceted},
+      {"dual", Scheme::nodal, Weights::dual, face, smoothed},
+      {"consistent", Scheme::nodal, Weights::consistent, face, faceted},
+      {"averaged, face", Scheme::averaged, Weights::dual, face, faceted},
+      {"averaged, segment", Scheme::averaged, Weights::dual, segment, smoothed},
+      {"integration point", Scheme::integration_point, Weights::dual, face, smoothed},
+      {"integration point, regularised", Scheme::integration_point, Weights::dual, face, smoothed},
+      {"nodal quadrature, gives way", Scheme::nodal, Weights::nodal_quadrature, face, faceted, true},
+      {"consistent, gives way", Scheme::nodal, Weights::consistent, face, faceted, true},
+      {"averaged, gives way", Scheme::averaged, Weights::dual, segment, smoothed, true},
+      {"integration point, gives way", Scheme::integration_point, Weights::dual, face, smoothed, true}};
 
   for (const unsigned int degree : {1u, 2u})
-    for (const auto &[name, scheme, weighting, integration, surface] : kinds)
+    for (const auto &[name, scheme, weighting, integration, surface, gives_way] : kinds)
     {
       auto bodies = std::vector<BodyParameters>{box("lower", "2,2,1", {0, 0, 0}, {1, 1, 1}, 1, 0),
                                                 box("upper", "1,3,1", {0.1, 0.1, 1.02}, {0.9, 0.9, 2}, 1, 0)};
@@ -68,6 +74,13 @@ int main(int argc, char **argv)
       p.scheme      = scheme;
       p.integration = integration;
       p.surface     = surface;
+      if (gives_way)
+      {
+        p.elastic_slip                   = 0.1;
+        p.pressure_gap.law               = PressureGapParameters::Law::exponential;
+        p.pressure_gap.stiffness         = 20.;
+        p.pressure_gap.stiffening_length = 0.03;
+      }
       ContactFixture fixture(bodies, {p}, degree);
       auto          &state = fixture.state;
 
@@ -94,6 +107,10 @@ int main(int argc, char **argv)
         state.lambda[k] = -1. + 0.5 * random(generator);
         state.Lambda[k] = {{random(generator), random(generator)}};
       }
+
+      if (gives_way)
+        for (Vector3 &slip : state.elastic_slip)
+          slip = 0.05 * Vector3({random(generator), random(generator), random(generator)});
 
       if (name == "integration point, regularised")
         fixture.status->regularise();

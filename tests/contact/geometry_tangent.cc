@@ -44,6 +44,7 @@ namespace
     double            degrees     = 0.;          ///< that both bodies turn
     unsigned int      degree      = 1;
     bool              orthotropic = false;
+    bool              gives_way   = false; ///< a pressure-gap law and elastic slip
   };
 
   /// A fixture whose multipliers keep what the solver keeps when it pairs again.
@@ -170,6 +171,13 @@ namespace
       p.second_friction_coefficient = 0.2;
       p.friction_direction          = Vector3({1., 0.5, 0.2});
     }
+    if (kind.gives_way)
+    {
+      p.elastic_slip                   = kind.friction == Friction::none ? 0. : 0.05;
+      p.pressure_gap.law               = PressureGapParameters::Law::exponential;
+      p.pressure_gap.stiffness         = 20.;
+      p.pressure_gap.stiffening_length = 0.03;
+    }
     if (kind.shape != Shape::mesh)
     {
       const bool apex         = kind.shape == Shape::paraboloid;
@@ -215,6 +223,8 @@ namespace
       state.lambda[k] = closed ? -(1. + 0.5 * random(generator)) : 0.;
       for (double &component : state.Lambda[k])
         component = kind.friction == Friction::none || !closed ? 0. : 0.5 * random(generator);
+      if (kind.gives_way && kind.friction != Friction::none)
+        state.elastic_slip[k] = 0.03 * Vector3({random(generator), random(generator), random(generator)});
     }
   }
 
@@ -384,6 +394,18 @@ namespace
             k.friction    = Friction::slip;
           });
     }
+    for (const auto &[friction, name] : {std::make_pair(Friction::none, ""),
+                                         {Friction::stick, ", stick, turned"},
+                                         {Friction::slip, ", slip, turned"},
+                                         {Friction::slip_coupled, ", slip with the pressure"}})
+      add(plain,
+          std::string(", gives way") + name,
+          [friction = friction](Kind &k)
+          {
+            k.gives_way = true;
+            k.friction  = friction;
+            k.degrees   = friction == Friction::stick || friction == Friction::slip ? 70. : 0.;
+          });
     add(plain,
         ", degree 2, stick",
         [](Kind &k)

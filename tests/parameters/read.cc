@@ -115,6 +115,12 @@ namespace
     print("friction direction", pair.friction_direction);
     print("friction factor", pair.friction_factor);
     print("shear limit", pair.shear_limit);
+    print("elastic slip", pair.elastic_slip);
+    print_choice("pressure-gap law", pair.pressure_gap.law);
+    print("contact stiffness", pair.pressure_gap.stiffness);
+    print("stiffening length", pair.pressure_gap.stiffening_length);
+    print("gap law overclosures", pair.pressure_gap.overclosures);
+    print("gap law pressures", pair.pressure_gap.pressures);
     print("normal augmentation factor", pair.normal_augmentation_factor);
     print("tangential augmentation factor", pair.tangential_augmentation_factor);
     print_choice("surface measure", pair.surface_measure);

@@ -43,7 +43,7 @@ namespace
     {
       states.now.history = model.solid->reached();
       model.solid->start_from(states.now.history);
-      model.contact->end_increment();
+      model.contact->end_increment(equilibrium.increment().duration());
       model.rigid_bodies.end_increment(equilibrium.driven().applied());
       states.committed = states.now;
       path.accept(1, true);

@@ -112,19 +112,22 @@ namespace
     }
     void operator()(Status::State &statuses)
     {
-      auto &[contact, stick, threshold, slip, adjustment, friction_factor] = statuses;
+      auto &[contact, stick, threshold, slip, adjustment, friction_factor, slip_rate, friction_state] = statuses;
       sites(contact);
       sites(stick);
       sites(threshold);
       sites(slip);
       sites(adjustment);
       sites(friction_factor);
+      sites(slip_rate);
+      sites(friction_state);
     }
     void operator()(InterfaceState &interface)
     {
-      auto &[statuses, tangents, area, force, jump, on_new_mesh, stuck] = interface;
+      auto &[statuses, tangents, elastic_slip, area, force, jump, on_new_mesh, stuck] = interface;
       (*this)(statuses);
       slaves(tangents);
+      slaves(elastic_slip);
       slaves(area);
       sites(force);
       sites(jump);

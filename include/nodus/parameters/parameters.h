@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ namespace Nodus
 {
   class ParameterFile;
   struct DeclaredKey;
+  class FrictionLaw;
+  class PressureGapLaw;
 
   /// Every struct below is one subsection of the parameter file; the text of a key is the name of the
   /// member with blanks, "Young's modulus" and the like excepted. Keys are bound to members and checked
@@ -166,6 +169,23 @@ namespace Nodus
     }
   };
 
+  /// How surfaces in contact give way under pressure p: the overclosure d, minus the gap.
+  struct PressureGapParameters
+  {
+    enum class Law
+    {
+      hard,        ///< d = 0
+      linear,      ///< p = k d
+      exponential, ///< p = k l (exp(d/l) - 1)
+      table
+    };
+    Law                 law               = Law::hard;
+    double              stiffness         = 0.; ///< k > 0 [pressure/length]
+    double              stiffening_length = 0.; ///< l > 0 [length]
+    std::vector<double> overclosures;           ///< of the table, not decreasing [length]
+    std::vector<double> pressures;              ///< at these, from 0, increasing [pressure]
+  };
+
   struct ContactPairParameters
   {
     enum class Scheme
@@ -243,30 +263,36 @@ namespace Nodus
       double             adjustment_distance = 0.; ///< gaps up to here are adjusted, too [length]
       double             overclosure_limit   = 0.; ///< [length]; 0 = automatic
     };
-    std::string      name;
-    RegionParameters slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
-    RegionParameters master; ///< keys "Master body", ...
-    ContactLaw       contact_law                 = ContactLaw::unilateral;
-    FrictionLaw      friction_law                = FrictionLaw::coulomb;
-    double           friction_coefficient        = 0.;
-    double           second_friction_coefficient = 0.;     ///< across the friction direction; 0: the same
-    Vector3          friction_direction;                   ///< of the first coefficient; zero: there is only one
-    std::string      friction_factor                = "1"; ///< of reference x, y, z and slip rate v
-    double           shear_limit                    = 0.;  ///< [pressure]; 0: none
-    double           normal_augmentation_factor     = 1.;  ///< times E/h gives rho_n
-    double           tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
-    Scheme           scheme                         = Scheme::averaged;
-    Integration      integration                    = Integration::segment;  ///< averaged scheme
-    QuadratureRule   quadrature_rule                = QuadratureRule::gauss; ///< integration points, averaged by face
-    unsigned int     quadrature_points              = 0; ///< per direction of a slave face; 0 = automatic
-    SurfaceMeasure   surface_measure                = SurfaceMeasure::current;
-    Weights          weights                        = Weights::nodal_quadrature;
-    Surface          surface                        = Surface::smoothed;
-    Normal           normal                         = Normal::averaged;
-    double           search_distance                = 0.;   ///< [length]; 0 = automatic
-    double           projection_tolerance           = 0.05; ///< overhang accepted, in face sizes
-    Start            start;
-    StatusTest       status_test = StatusTest::weighted;
+    std::string           name;
+    RegionParameters      slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
+    RegionParameters      master; ///< keys "Master body", ...
+    ContactLaw            contact_law                 = ContactLaw::unilateral;
+    FrictionLaw           friction_law                = FrictionLaw::coulomb;
+    double                friction_coefficient        = 0.;
+    double                second_friction_coefficient = 0.; ///< across the friction direction; 0: the same
+    Vector3               friction_direction;               ///< of the first coefficient; zero: there is only one
+    std::string           friction_factor = "1";            ///< of reference x, y, z and slip rate v
+    double                shear_limit     = 0.;             ///< [pressure]; 0: none
+    double                elastic_slip    = 0.;             ///< at which friction reaches its limit [length]
+    PressureGapParameters pressure_gap;
+
+    /// What a program or a plug-in gives instead of the shipped laws.
+    std::shared_ptr<const Nodus::FrictionLaw> own_friction_law;
+    std::shared_ptr<const PressureGapLaw>     own_pressure_gap_law;
+    double                                    normal_augmentation_factor = 1.; ///< times E/h gives rho_n
+    double         tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
+    Scheme         scheme                         = Scheme::averaged;
+    Integration    integration                    = Integration::segment;  ///< averaged scheme
+    QuadratureRule quadrature_rule                = QuadratureRule::gauss; ///< integration points, averaged by face
+    unsigned int   quadrature_points              = 0; ///< per direction of a slave face; 0 = automatic
+    SurfaceMeasure surface_measure                = SurfaceMeasure::current;
+    Weights        weights                        = Weights::nodal_quadrature;
+    Surface        surface                        = Surface::smoothed;
+    Normal         normal                         = Normal::averaged;
+    double         search_distance                = 0.;   ///< [length]; 0 = automatic
+    double         projection_tolerance           = 0.05; ///< overhang accepted, in face sizes
+    Start          start;
+    StatusTest     status_test = StatusTest::weighted;
 
     MasterSurfaceParameters master_surface; ///< instead of the master faces; keys "Master surface", ...
 
@@ -337,6 +363,7 @@ namespace Nodus
   std::string text_of(ContactPairParameters::Integration integration);
   std::string text_of(ContactPairParameters::Surface surface);
   std::string text_of(ContactPairParameters::ContactLaw law);
+  std::string text_of(PressureGapParameters::Law law);
   std::string text_of(LoopParameters::Mode mode);
   std::string text_of(LinearSolverParameters::Type type);
 } // namespace Nodus
