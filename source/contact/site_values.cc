@@ -56,16 +56,16 @@ namespace Nodus
         }
       return result;
     }
-    /// What the multipliers leave of the elastic slip that the increment began with (eq. F4), at the slave nodes.
-    Components released_slip(const Pairing &pairing, const Status &status, const ContactState &state)
+    /// How the elastic slip of the slave nodes has changed in the increment (eq. F4), in the scale of the slip.
+    Components nodal_elastic_slip(const Pairing &pairing, const Status &status, const ContactState &state)
     {
-      Components released(state.Lambda.size(), {{0., 0.}});
-      for (unsigned int k = 0; k < released.size(); ++k)
+      Components change(state.Lambda.size(), {{0., 0.}});
+      for (unsigned int k = 0; k < change.size(); ++k)
         if (const double length = status.elastic_slip(k); length > 0.)
           for (unsigned int i = 0; i < 2; ++i)
             if (pairing[k].tangent_free[i])
-              released[k][i] = state.elastic_slip[k] * pairing[k].tangent[i] - length * state.Lambda[k][i];
-      return released;
+              change[k][i] = length * state.Lambda[k][i] - state.elastic_slip[k] * pairing[k].tangent[i];
+      return change;
     }
   } // namespace
 
@@ -93,6 +93,21 @@ namespace Nodus
     return overclosures;
   }
 
+  std::vector<std::array<double, 2>> elastic_slip_change(const ContactSurfaces &surfaces,
+                                                         const Pairing         &pairing,
+                                                         const SurfaceWeights  &weights,
+                                                         const Status          &status,
+                                                         const ContactState    &state)
+  {
+    if (!status.has_elastic_slip())
+      return Components(surfaces.n_sites(), {{0., 0.}});
+    Components change = site_friction(surfaces, pairing, weights, status, nodal_elastic_slip(pairing, status, state));
+    for (unsigned int s = 0; s < change.size(); ++s)
+      for (unsigned int i = 0; i < 2; ++i)
+        change[s][i] = pairing[s].tangent_free[i] ? change[s][i] / pairing[s].friction_scale[i] : 0.;
+    return change;
+  }
+
   StatusInput status_input(const std::vector<ContactPairParameters> &pairs,
                            const ContactSurfaces                    &surfaces,
                            const Pairing                            &pairing,
@@ -107,10 +122,9 @@ namespace Nodus
       input.Lambda = site_friction(surfaces, pairing, weights, status, state.Lambda);
     else
       input.Lambda.assign(surfaces.n_sites(), {{0., 0.}});
-    const bool elastic =
-        std::any_of(pairs.begin(), pairs.end(), [](const auto &pair) { return pair.elastic_slip > 0.; });
-    const Components released = elastic ? released_slip(pairing, status, state) : Components();
-    const Components at_site  = elastic ? site_friction(surfaces, pairing, weights, status, released) : Components();
+    const bool       elastic = status.has_elastic_slip();
+    const Components nodal   = elastic ? nodal_elastic_slip(pairing, status, state) : Components();
+    const Components at_site = elastic ? site_friction(surfaces, pairing, weights, status, nodal) : Components();
     const std::vector<double> overclosures = site_overclosures(surfaces, status, input.pressure, state.lambda);
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
     {
@@ -129,7 +143,7 @@ namespace Nodus
       {
         input.slip.back()[i] *= pairing[s].friction_scale[i];
         if (elastic)
-          input.slip.back()[i] += raw ? released[s][i] : at_site[s][i];
+          input.slip.back()[i] -= raw ? nodal[s][i] : at_site[s][i];
       }
       if (!tested)
         input.pressure[s] = 0.;

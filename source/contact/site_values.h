@@ -22,6 +22,14 @@ namespace Nodus
                                         const std::vector<double> &pressure,
                                         const std::vector<double> &lambda);
 
+  /// What elastic slip takes of the slip of the increment (eq. F4), along the tangents of every site, 0 where there is
+  /// none [length]. Right at owned sites. Collective.
+  std::vector<std::array<double, 2>> elastic_slip_change(const ContactSurfaces &surfaces,
+                                                         const Pairing         &pairing,
+                                                         const SurfaceWeights  &weights,
+                                                         const Status          &status,
+                                                         const ContactState    &state);
+
   /// What the status tests look at (eq. S1). Friction as the pressure: at slave nodes the weighted mean of Lambda by
   /// components, of nodes with friction; at integration points Lambda interpolated in space. `Status test = raw` takes
   /// the nodal unknowns. Right at owned sites. Collective.

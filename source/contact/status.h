@@ -145,6 +145,10 @@ namespace Nodus
     {
       return gap_laws_[surfaces_.pair(site)].get();
     }
+    bool has_elastic_slip() const
+    {
+      return std::any_of(pairs_.begin(), pairs_.end(), [](const auto &pair) { return pair.elastic_slip > 0.; });
+    }
     double elastic_slip(const unsigned int site) const
     {
       return pairs_[surfaces_.pair(site)].elastic_slip;

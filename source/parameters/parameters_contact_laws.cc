@@ -115,9 +115,12 @@ namespace Nodus
     }
   } // namespace
 
-  void ParameterKeys::add_contact_laws(ParameterHandler &prm, ContactPairParameters &pair)
+  namespace ParameterKeys
   {
-    add_laws(prm, pair);
-    add_pressure_gap(prm, pair.pressure_gap);
-  }
+    void add_contact_laws(ParameterHandler &prm, ContactPairParameters &pair)
+    {
+      add_laws(prm, pair);
+      add_pressure_gap(prm, pair.pressure_gap);
+    }
+  } // namespace ParameterKeys
 } // namespace Nodus

@@ -1,5 +1,6 @@
 #include "run/energy_audit.h"
 #include "contact/loci.h"
+#include "contact/site_values.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -75,7 +76,7 @@ namespace Nodus
     }
     const ContactWork work = contact_work();
     of_increment.external += work.masters;
-    of_increment.contact  = work.normal;
+    of_increment.contact  = work.surfaces;
     of_increment.friction = work.friction;
 
     // What is stored and dissipated.
@@ -131,7 +132,9 @@ namespace Nodus
     const ContactSurfaces      &surfaces   = contact.surfaces();
     const std::vector<Vector3> &before     = states_.committed.contact.force;
     const double                negligible = negligible_dissipation();
-    ContactWork                 work;
+    const auto                  elastic =
+        elastic_slip_change(surfaces, contact.pairing(), contact.weights(), contact.status(), contact.state());
+    ContactWork work;
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
     {
       if (!surfaces.is_owned(s) || !surfaces.has_status(s))
@@ -141,9 +144,13 @@ namespace Nodus
       const Vector3              &n           = contact.pairing()[s].normal;
       double                      dissipation = 0.;
       for (unsigned int i = 0; i < 2 && !contact.status().holds_friction(s); ++i)
-        dissipation -= force * contact.pairing()[s].tangent[i] * slip[i];
+      {
+        const Vector3 &t = contact.pairing()[s].tangent[i];
+        dissipation -= (force * t) * (slip[i] - elastic[s][i]);
+        work.surfaces += 0.5 * ((before[s] + force) * t) * elastic[s][i];
+      }
       work.masters += 0.5 * (before[s] + force) * contact.jump().rigid(s).moved;
-      work.normal +=
+      work.surfaces +=
           0.5 * ((before[s] + force) * n) * (n * contact.jump().jump_of_increment(s, contact.state().increment));
       work.friction += dissipation;
       if (dissipation < -negligible)

@@ -20,10 +20,11 @@ namespace Nodus
     void account();
 
   private:
-    /// What contact does at this rank's sites: work of rigid masters and of the normal forces, and dissipation.
+    /// What contact does at this rank's sites: work of rigid masters, of normal forces and of friction on elastic slip
+    /// (on the bodies: what surfaces that give way store is lost to them), and dissipation.
     struct ContactWork
     {
-      double                    masters = 0., normal = 0., friction = 0.;
+      double                    masters = 0., surfaces = 0., friction = 0.;
       std::vector<unsigned int> creating; ///< sites where friction created energy
     };
     ContactWork contact_work() const;

@@ -15,7 +15,9 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <fstream>
 #include <functional>
+#include <limits>
 
 using namespace Cases;
 
@@ -140,6 +142,22 @@ namespace
     return forces;
   }
 
+  /// Last value of a column of energy.csv.
+  double energy(const std::string &title)
+  {
+    MPI_Barrier(world());
+    std::ifstream file("surfaces_that_give_way_results/energy.csv");
+    std::string   titles, line, last;
+    std::getline(file, titles);
+    while (std::getline(file, line))
+      last = line;
+    std::istringstream keys(titles), values(last);
+    for (std::string key, value; std::getline(keys, key, ',') && std::getline(values, value, ',');)
+      if (key.substr(0, key.find(" [")) == title)
+        return std::stod(value);
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+
   void shear(const Way &way)
   {
     constexpr double      G = 500., gamma = 0.01, stiffness = 400.;
@@ -157,6 +175,10 @@ namespace
       slip    = D[i] - stiffness * elastic / G;
       check("Tresca, elastic slip " + std::to_string(elastic), -forces[i], stiffness * elastic, 1e-8);
     }
+
+    // what slid is 0.022 forth and 0.024 back; the elastic slip has stored 400 e^2/2
+    check("dissipated by friction", energy("frictional dissipation"), 4. * (0.022 + 0.024), 1e-8);
+    check("stored in the surfaces", -energy("contact work"), 200. * gamma * gamma, 1e-8);
 
     laws                             = ContactPairParameters();
     laws.friction_coefficient        = 0.4;
