@@ -1,5 +1,8 @@
+#include "parallel/throw_everywhere.h"
 #include <nodus/base/signals.h>
+#include <nodus/base/version.h>
 #include <nodus/parameters/parameters.h>
+#include <nodus/run/check_laws.h>
 #include <nodus/run/contact_problem.h>
 
 #include <deal.II/base/config.h>
@@ -21,16 +24,19 @@ namespace
 {
   const char *const usage = R"(nodus: contact of 3D bodies at large deformation, with friction
 
-  nodus case.prm [--set "Section/Key=value"]... [--validate | [--restart] [--profile]]
+  nodus case.prm [--set "Section/Key=value"]... [--validate | --check-law | [--restart] [--profile]]
 
   case.prm                   the parameter file; one that ends in .json is read as JSON
   --set "Section/Key=value"  replaces a value of the file, e.g. --set "Contact pair 1/Friction coefficient=0.3"
   --validate                 reads the case, pairs the surfaces, prints what a run would start from and stops
   --restart                  continues from the last complete checkpoint in the results folder, on any number of processes
+  --check-law                compares the laws of the case with what follows from them, stresses with energies and
+                             tangents with differences, prints the largest errors and stops; exit code 1 above 1e-6
   --profile                  prints CPU time, calls and memory by phase, and writes them to profile.json in the results folder
   --explain WORDS            prints what the keys mean that have WORDS in their path, their choices or else their meaning,
                              e.g. --explain "friction" or --explain traction
   --document                 prints the reference of all parameters (Markdown)
+                             with case.prm beside it, both know the plug-ins that it loads (Additional shared libraries)
   --version                  prints the versions of nodus and of its libraries
   --help                     prints this text
 
@@ -41,7 +47,7 @@ namespace
   {
     std::string              file;
     std::vector<std::string> overrides;
-    bool                     validate = false, restart = false, profile = false;
+    bool                     validate = false, check_law = false, restart = false, profile = false;
     std::string              print;   ///< --document, --explain, --version or --help
     std::string              explain; ///< the key
   };
@@ -63,6 +69,8 @@ namespace
       }
       else if (argument == "--validate")
         command.validate = true;
+      else if (argument == "--check-law")
+        command.check_law = true;
       else if (argument == "--restart")
         command.restart = true;
       else if (argument == "--profile")
@@ -83,9 +91,9 @@ namespace
     }
     if (command.file.empty() && command.print.empty())
       throw Nodus::InputError("no parameter file; see nodus --help");
-    if (command.validate && (command.profile || command.restart))
-      throw Nodus::InputError(std::string(command.profile ? "--profile" : "--restart") +
-                              " needs a run; leave out --validate");
+    if ((command.validate || command.check_law) && (command.profile || command.restart))
+      throw Nodus::InputError(std::string(command.profile ? "--profile" : "--restart") + " needs a run; leave out " +
+                              (command.validate ? "--validate" : "--check-law"));
     return command;
   }
 
@@ -110,6 +118,8 @@ namespace
 
   std::string answer(const CommandLine &command)
   {
+    if (!command.file.empty() && (command.print == "--document" || command.print == "--explain"))
+      Nodus::Parameters::load_libraries(command.file, command.overrides);
     if (command.print == "--document")
       return Nodus::Parameters::documentation();
     if (command.print == "--explain")
@@ -125,6 +135,23 @@ namespace
     for (std::string word; words >> word;)
       line += (line.empty() ? "" : " ") + word;
     return line;
+  }
+
+  /// A file or a library that one rank cannot read is read by none.
+  Nodus::Parameters read(const CommandLine &command)
+  {
+    Nodus::Parameters parameters;
+    std::string       problem;
+    try
+    {
+      parameters = Nodus::Parameters::read(command.file, command.overrides);
+    }
+    catch (const Nodus::InputError &error)
+    {
+      problem = error.what();
+    }
+    Nodus::throw_everywhere<Nodus::InputError>(problem, MPI_COMM_WORLD);
+    return parameters;
   }
 
   /// Errors after the file was read do not know its name.
@@ -164,10 +191,18 @@ int main(int argc, char **argv)
       if (first_rank)
         std::cout << text << std::flush;
     }
+    else if (command.check_law)
+    {
+      std::ostringstream log;
+      const bool         hold = Nodus::check_laws(read(command), log);
+      if (first_rank)
+        std::cout << log.str() << std::flush;
+      return hold ? 0 : 1;
+    }
     else
     {
       Nodus::Signals::install();
-      solve(Nodus::Parameters::read(command.file, command.overrides), command);
+      solve(read(command), command);
     }
     return 0;
   }

@@ -4,7 +4,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 install(TARGETS nodus RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-install(TARGETS nodus_library EXPORT nodus ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+install(TARGETS nodus_library nodus_plugin EXPORT nodus ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 install(DIRECTORY include/nodus DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 
 set(_package ${CMAKE_INSTALL_LIBDIR}/cmake/nodus)

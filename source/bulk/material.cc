@@ -4,6 +4,7 @@
 #include "bulk/mooney_rivlin.h"
 #include "bulk/neo_hookean.h"
 #include "bulk/ogden.h"
+#include "bulk/own_material.h"
 #include "bulk/st_venant_kirchhoff.h"
 
 namespace Nodus
@@ -13,14 +14,21 @@ namespace Nodus
   SymmetricTensor<2, dim> Material::cauchy_stress(const Tensor<2, dim> &F, const double *const state) const
   {
     SymmetricTensor<2, dim> S;
-    std::vector<double>     unchanged(n_state());
     if (state)
-      update(F, state, unchanged.data(), S, nullptr);
+      S = stress_again(F, state);
     else
       evaluate(F, S, nullptr);
     if (small_strain())
       return S;
     return symmetrize(F * Tensor<2, dim>(S) * transpose(F)) / determinant(F);
+  }
+
+  SymmetricTensor<2, dim> Material::stress_again(const Tensor<2, dim> &F, const double *const state) const
+  {
+    SymmetricTensor<2, dim> S;
+    std::vector<double>     unchanged(n_state());
+    update(F, state, unchanged.data(), S, nullptr);
+    return S;
   }
 
   void Material::update(
@@ -42,16 +50,30 @@ namespace Nodus
     SymmetricTensor<4, dim> C_cell;
     for (unsigned int v = 0; v < n_lanes; ++v)
     {
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int J = 0; J < dim; ++J)
-          F_cell[i][J] = F[i][J][v];
+      take_lane(F, v, F_cell);
       evaluate(F_cell, S_cell, C ? &C_cell : nullptr);
-      for (unsigned int r = 0; r < n_pairs; ++r)
-      {
-        S[r][v] = S_cell.access_raw_entry(r);
-        for (unsigned int c = 0; C && c < n_pairs; ++c)
-          (*C)[r][c][v] = C_cell.access_raw_entry(n_pairs * r + c);
-      }
+      set_lane(S_cell, C_cell, v, S, C);
+    }
+  }
+
+  void Material::take_lane(const Lanes (&F)[dim][dim], const unsigned int lane, Tensor<2, dim> &F_cell)
+  {
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int J = 0; J < dim; ++J)
+        F_cell[i][J] = F[i][J][lane];
+  }
+
+  void Material::set_lane(const SymmetricTensor<2, dim> &S_cell,
+                          const SymmetricTensor<4, dim> &C_cell,
+                          const unsigned int             lane,
+                          Lanes (&S)[n_pairs],
+                          Lanes (*C)[n_pairs][n_pairs])
+  {
+    for (unsigned int r = 0; r < n_pairs; ++r)
+    {
+      S[r][lane] = S_cell.access_raw_entry(r);
+      for (unsigned int c = 0; C && c < n_pairs; ++c)
+        (*C)[r][c][lane] = C_cell.access_raw_entry(n_pairs * r + c);
     }
   }
 
@@ -73,6 +95,8 @@ namespace Nodus
 
   std::unique_ptr<Material> make_material(const MaterialParameters &parameters)
   {
+    if (parameters.law == MaterialParameters::Law::own)
+      return std::make_unique<OwnMaterial>(parameters.own_law);
     const double E = parameters.youngs_modulus, nu = parameters.poissons_ratio;
     const bool   ogden = parameters.law == MaterialParameters::Law::ogden; // E follows from the moduli
     if (!(E > 0. || ogden) || !(nu > -1. && nu < 0.5) || !(parameters.mooney_rivlin_ratio >= 0.))
@@ -93,6 +117,8 @@ namespace Nodus
         return std::make_unique<Ogden>(parameters);
       case MaterialParameters::Law::j2_plasticity:
         return std::make_unique<J2Plasticity>(parameters);
+      case MaterialParameters::Law::own:
+        break;
     }
     throw InputError("Material: unknown law");
   }

@@ -46,6 +46,11 @@ namespace Nodus
     {
     }
 
+    /// How long the steps of update() take from here on, in the time of the load path: for laws that depend on rates.
+    virtual void set_step(double /*duration*/)
+    {
+    }
+
     /// Of a law with history: the response to F from rest.
     /// @param F deformation gradient, det F > 0 is the caller's duty
     /// @param S second Piola-Kirchhoff stress [pressure]
@@ -97,6 +102,17 @@ namespace Nodus
     dealii::SymmetricTensor<2, dim> cauchy_stress(const dealii::Tensor<2, dim> &F, const double *state = nullptr) const;
 
   protected:
+    /// Second Piola-Kirchhoff stress at F and a state that F led to: as update(), in a step that takes no time.
+    virtual dealii::SymmetricTensor<2, dim> stress_again(const dealii::Tensor<2, dim> &F, const double *state) const;
+
+    /// One cell of several that are worked on at once.
+    static void take_lane(const Lanes (&F)[dim][dim], unsigned int lane, dealii::Tensor<2, dim> &F_cell);
+    static void set_lane(const dealii::SymmetricTensor<2, dim> &S_cell,
+                         const dealii::SymmetricTensor<4, dim> &C_cell,
+                         unsigned int                           lane,
+                         Lanes (&S)[n_pairs],
+                         Lanes (*C)[n_pairs][n_pairs]);
+
     /// (A_ik A_jl + A_il A_jk)/2; for A = C^-1 it is -dC^-1/dC.
     static dealii::SymmetricTensor<4, dim> symmetric_square(const dealii::SymmetricTensor<2, dim> &A);
   };

@@ -80,6 +80,7 @@ namespace Nodus
     /// At a quadrature point of start().
     struct PointResult
     {
+      dealii::Tensor<2, dim>          deformation_gradient; ///< that the law sees
       dealii::SymmetricTensor<2, dim> cauchy_stress;
       double                          equivalent_plastic_strain;
       double                          stored_energy, dissipation; ///< per reference volume

@@ -142,7 +142,8 @@ namespace Nodus
               F_point[i][J] = F[q].F[i][J][v];
           for (unsigned int i = 0; i < state.size(); ++i)
             state[i] = s.start->values[batch.state + q * state.size() + i][v];
-          points[q] = {material.cauchy_stress(F_point, state.data()),
+          points[q] = {F_point,
+                       material.cauchy_stress(F_point, state.data()),
                        material.equivalent_plastic_strain(state.data()),
                        material.stored_energy(F_point, state.data()),
                        material.dissipation(state.data()),

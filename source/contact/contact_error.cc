@@ -150,6 +150,29 @@ namespace Nodus
     masters.deliver([&](const unsigned int cell, const double value) { indicator.squared_error[cell] += value; });
   }
 
+  std::vector<double> largest_contact_pressure(const ContactSurfaces            &surfaces,
+                                               const ContactGeometry            &geometry,
+                                               const std::vector<ContactFields> &fields,
+                                               const unsigned int                n_cells)
+  {
+    std::vector<double> largest(n_cells, 0.);
+    const auto          note = [&](const unsigned int cell, const double pressure)
+    { largest[cell] = std::max(largest[cell], pressure); };
+    MasterMarks masters(surfaces);
+    for_own_faces(surfaces,
+                  [&](const unsigned int p, const unsigned int f, const unsigned int own)
+                  {
+                    double pressure = 0.;
+                    for (const unsigned int i : fields[p].faces[own])
+                      pressure = std::max(pressure, fields[p].pressure[i]);
+                    note(surfaces.slave_faces(p)[f].cell, pressure);
+                    if (pressure > 0.)
+                      masters.add(p, opposite(geometry, p, f, middle_xi, middle_eta).master, pressure);
+                  });
+    masters.deliver(note);
+    return largest;
+  }
+
   void
   mark_coarse_slaves(const ContactSurfaces &surfaces, const ContactGeometry &geometry, RefinementIndicator &indicator)
   {

@@ -29,6 +29,13 @@ namespace Nodus
                          const NodalStress                &stress,
                          RefinementIndicator              &indicator);
 
+  /// The largest pressure at the nodes of the slave faces of a cell, and of those whose middles its master faces face,
+  /// by active cell index of @p n_cells; 0 without. Collective.
+  std::vector<double> largest_contact_pressure(const ContactSurfaces            &surfaces,
+                                               const ContactGeometry            &geometry,
+                                               const std::vector<ContactFields> &fields,
+                                               unsigned int                      n_cells);
+
   /// Marks the cells of slave faces that are larger than the master faces they face, by more than a third.
   void
   mark_coarse_slaves(const ContactSurfaces &surfaces, const ContactGeometry &geometry, RefinementIndicator &indicator);

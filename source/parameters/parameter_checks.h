@@ -51,7 +51,11 @@ namespace Nodus
     /// Different predicates may separate faces of one id; the mesh will tell.
     bool share_faces(const RegionParameters &a, const RegionParameters &b);
 
+    void check(const Section &section, const MaterialParameters &material);
     void check(const Section &section, const ContactPairParameters &pair, unsigned int n_bodies);
+
+    /// Of the law, where it is one's own.
+    void initialize(const Section &section, const MaterialParameters &material);
   } // namespace ParameterChecks
 } // namespace Nodus
 

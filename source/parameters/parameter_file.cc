@@ -1,6 +1,7 @@
 #include "parameters/parameter_file.h"
 #include "base/suggestion.h"
 #include <nodus/base/types.h>
+#include <nodus/plugins/registry.h>
 
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/utilities.h>
@@ -282,7 +283,9 @@ namespace Nodus
               if (std::find(names.begin(), names.end(), first) == names.end())
                 names.push_back(first); // the file may mean to have one
           throw InputError(origin + ": unknown subsection '" + name + "' " + in_section(known) +
-                           suggestion(name, names));
+                           (names.empty()
+                                ? "; what a plug-in brings needs its library among the " + std::string(libraries_key)
+                                : suggestion(name, names)));
         }
         known = join(known, name);
       }
@@ -332,12 +335,50 @@ namespace Nodus
     }
   }
 
+  std::vector<std::string> ParameterFile::keys(const std::string &section) const
+  {
+    std::vector<std::string> keys;
+    for (const auto &entry : entries_)
+      if (entry.section == section)
+        keys.push_back(entry.key);
+    return keys;
+  }
+
+  std::vector<std::string> ParameterFile::list(const std::string &section, const std::string &key) const
+  {
+    for (const auto &entry : entries_)
+      if (entry.section == section && entry.key == key)
+        return entry.list.empty() ? dealii::Utilities::split_string_list(entry.value, ',') : entry.list;
+    return {};
+  }
+
+  void ParameterFile::refuse_idle_plugins() const
+  {
+    for (const auto &entry : entries_)
+      if (const std::string name = last_name(entry.section), place = parent(entry.section);
+          Plugins::is_registered(name) &&
+          std::none_of(entries_.begin(),
+                       entries_.end(),
+                       [&](const Entry &other) { return other.section == place && other.value == name; }))
+        refuse(entry.section, entry.key, "has no effect, because nothing beside it chooses '" + name + "'; remove it");
+  }
+
+  std::string ParameterFile::origin_of(std::string section) const
+  {
+    for (; !section.empty(); section = parent(section))
+      if (const auto opened = sections_.find(section); opened != sections_.end())
+        return opened->second;
+    return file_;
+  }
+
+  void ParameterFile::refuse_section(const std::string &section, const std::string &message) const
+  {
+    throw InputError(origin_of(section) + ": '" + section + "': " + message);
+  }
+
   void ParameterFile::refuse(const std::string &section, const std::string &key, const std::string &message) const
   {
-    std::string origin = file_;
-    for (std::string s = section; !s.empty() && origin == file_; s = parent(s))
-      if (const auto opened = sections_.find(s); opened != sections_.end())
-        origin = opened->second;
+    std::string origin = origin_of(section);
     for (const auto &entry : entries_)
       if (entry.section == section && entry.key == key)
         origin = entry.origin;

@@ -15,6 +15,9 @@ namespace dealii
 
 namespace Nodus
 {
+  /// The key at the top level that names the plug-ins.
+  constexpr const char *libraries_key = "Additional shared libraries";
+
   /// What a ParameterHandler declares, in the order of declaration.
   struct DeclaredKey
   {
@@ -59,6 +62,16 @@ namespace Nodus
     /// Sets every entry. @throws InputError on unknown keys and on values outside of their pattern.
     void apply_to(dealii::ParameterHandler &prm) const;
 
+    /// What the file and the overrides set in @p section.
+    std::vector<std::string> keys(const std::string &section) const;
+    /// The entries of a list of texts, separated by ','; none where it is not set.
+    std::vector<std::string> list(const std::string &section, const std::string &key) const;
+
+    /// Refuses keys in the subsections of plug-ins that no key beside the subsection chooses. @throws InputError
+    void refuse_idle_plugins() const;
+
+    /// Throws InputError "file:line: 'section': message", with the line of the section, or of the one around it.
+    [[noreturn]] void refuse_section(const std::string &section, const std::string &message) const;
     /// Throws InputError "file:line: 'key' in 'section' message", with the line of the key or else of its section.
     [[noreturn]] void refuse(const std::string &section, const std::string &key, const std::string &message) const;
 
@@ -81,6 +94,8 @@ namespace Nodus
     void read_statement(const std::string &line, const std::string &origin, std::string &section);
     void add(const Entry &entry);
     void override_with(const std::string &text);
+    /// Where the section begins, or the one around it.
+    std::string origin_of(std::string section) const;
 
     std::string                        file_;
     std::vector<Entry>                 entries_;

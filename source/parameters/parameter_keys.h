@@ -89,6 +89,7 @@ namespace Nodus
                     const std::string          &axis,
                     const std::string          &centre);
 
+    void add_material(ParameterHandler &prm, MaterialParameters &material);
     void add_contact_pair(ParameterHandler &prm, ContactPairParameters &pair);
     /// What its surfaces do once closed, how they give way, and how they rub.
     void add_contact_laws(ParameterHandler &prm, ContactPairParameters &pair);

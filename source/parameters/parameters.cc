@@ -3,7 +3,9 @@
 #include "parameters/parameter_file.h"
 #include "parameters/parameter_keys.h"
 #include "parameters/parameter_reference.h"
+#include "parameters/plugin_keys.h"
 #include <nodus/parameters/parameters.h>
+#include <nodus/plugins/error_indicator.h>
 
 #include <deal.II/base/utilities.h>
 
@@ -17,14 +19,6 @@ namespace Nodus
   namespace
   {
     using namespace ParameterKeys;
-
-    const Names<MaterialParameters::Law> law_names = {
-        {MaterialParameters::Law::linear_elastic, "linear elastic"},
-        {MaterialParameters::Law::st_venant_kirchhoff, "St Venant-Kirchhoff"},
-        {MaterialParameters::Law::neo_hookean, "neo-Hookean"},
-        {MaterialParameters::Law::mooney_rivlin, "Mooney-Rivlin"},
-        {MaterialParameters::Law::ogden, "Ogden"},
-        {MaterialParameters::Law::j2_plasticity, "J2 plasticity"}};
 
     const Names<BodyParameters::VolumetricTreatment> treatment_names = {
         {BodyParameters::VolumetricTreatment::standard, "standard"},
@@ -59,69 +53,6 @@ namespace Nodus
                        for (const auto &name : dealii::Utilities::split_string_list(text, ','))
                          components.push_back(value_of(name, names));
                      });
-    }
-
-    void add(ParameterHandler &prm, MaterialParameters &material)
-    {
-      add_choice(
-          prm,
-          "Law",
-          material.law,
-          law_names,
-          "Law of the material [-]. All but the first are finite-strain laws; J2 plasticity is elastoplastic with "
-          "isotropic hardening, in logarithmic strains and Kirchhoff stresses.");
-      prm.add_parameter(
-          "Young's modulus",
-          material.youngs_modulus,
-          "Young's modulus of the undeformed material [pressure], > 0. Must be given, but for Ogden, where "
-          "it is (1 + nu) times the sum of the products of moduli and exponents.",
-          not_negative);
-      prm.add_parameter("Poisson's ratio",
-                        material.poissons_ratio,
-                        "Poisson's ratio of the undeformed material [-], > -1 and < 0.5. From 0.45 on low-order cells "
-                        "lock: see Volumetric treatment.",
-                        any_number);
-      prm.add_parameter("Mooney-Rivlin ratio",
-                        material.mooney_rivlin_ratio,
-                        "Ratio of the second to the first constant of the Mooney-Rivlin law [-]; 0 is neo-Hookean.",
-                        not_negative);
-      prm.add_parameter("Ogden moduli",
-                        material.ogden_moduli,
-                        "Moduli mu_i of the terms mu_i/alpha_i (sum of isochoric stretches^alpha_i - 3) of Ogden's law "
-                        "[pressure]. Half the sum of mu_i alpha_i is the initial shear modulus.",
-                        numbers);
-      prm.add_parameter("Ogden exponents",
-                        material.ogden_exponents,
-                        "Exponents alpha_i of Ogden's law [-], one for each modulus, not 0.",
-                        numbers);
-      prm.add_parameter("Yield stress",
-                        material.yield_stress,
-                        "J2 plasticity: initial yield stress [pressure], > 0. Must be given, or the hardening table.",
-                        not_negative);
-      prm.add_parameter("Hardening modulus",
-                        material.hardening_modulus,
-                        "J2 plasticity: linear hardening, yield stress over equivalent plastic strain [pressure].",
-                        not_negative);
-      prm.add_parameter(
-          "Saturation stress",
-          material.saturation_stress,
-          "J2 plasticity: yield stress that Voce's exponential hardening tends to, without the linear part "
-          "[pressure]; 0: no such hardening.",
-          not_negative);
-      prm.add_parameter("Saturation rate",
-                        material.saturation_rate,
-                        "J2 plasticity: factor of the equivalent plastic strain in the exponential [-].",
-                        not_negative);
-      prm.add_parameter("Hardening strains",
-                        material.hardening_strains,
-                        "J2 plasticity: equivalent plastic strains of a hardening table [-], the first 0, increasing; "
-                        "the yield stress is linear in between and constant behind the last. Instead of the four keys "
-                        "above.",
-                        numbers);
-      prm.add_parameter("Hardening stresses",
-                        material.hardening_stresses,
-                        "J2 plasticity: yield stresses of the hardening table [pressure], > 0, not decreasing.",
-                        numbers);
     }
 
     void add(ParameterHandler &prm, BodyParameters &body)
@@ -202,7 +133,7 @@ namespace Nodus
                       "Moment on the rigid body at time t about its rotation centre as it moves, in global axes [force "
                       "length]: three expressions of t, separated by ';'.");
       prm.enter_subsection("Material");
-      add(prm, body.material);
+      add_material(prm, body.material);
       prm.leave_subsection();
     }
 
@@ -294,6 +225,12 @@ namespace Nodus
   void Parameters::add_parameters(ParameterHandler &prm)
   {
     prm.add_parameter("Title", title, "Title of the case, for the log [-].", Patterns::Anything());
+    prm.add_parameter(libraries_key,
+                      additional_shared_libraries,
+                      "Plug-ins [-], separated by ',', relative to the folder of the .prm file: shared libraries that "
+                      "bring laws and indicators of one's own, whose names and keys nodus knows from then on (see "
+                      "plugins.md).",
+                      anything_separated_by(","));
     prm.enter_subsection("Discretization");
     prm.add_parameter("Degree", degree, "Polynomial degree of the displacement [-].", Patterns::Integer(1, 2));
     prm.leave_subsection();
@@ -302,11 +239,6 @@ namespace Nodus
     add_numbered(prm, "Contact pair", contact_pairs);
     add_solution(prm, *this);
     add_subsection(prm, "Output", output);
-  }
-
-  std::string text_of(const MaterialParameters::Law law)
-  {
-    return text_of(law, law_names);
   }
 
   std::string text_of(const BoundaryConditionParameters::Type type)
@@ -341,16 +273,32 @@ namespace Nodus
     ParameterHandler prm;
     copy.add_parameters(prm);
     std::map<std::string, std::string> values;
-    for (const auto &key : declared_keys(prm))
+    for (const auto &key : without_idle_plugins(declared_keys(prm)))
       for (const std::string room : {"Discretization", "Body", "Boundary condition", "Contact pair"})
         if (key.section.compare(0, room.size(), room) == 0)
           values[key.section + '/' + key.key] = key.default_value;
     return values;
   }
 
+  void Parameters::initialize_plugins(const ParameterFile &file)
+  {
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+      ParameterChecks::initialize({file, "Body " + std::to_string(b + 1) + "/Material"}, bodies[b].material);
+    if (adaptivity.indicator == AdaptivityParameters::Indicator::own)
+      ParameterChecks::initialize(
+          {file, "Adaptivity"}, adaptivity.own_indicator.name, *adaptivity.own_indicator.object);
+  }
+
+  std::vector<std::string> Parameters::load_libraries(const std::string              &file,
+                                                      const std::vector<std::string> &overrides)
+  {
+    return load_plugins(ParameterFile(file, overrides), file, reference_keys);
+  }
+
   Parameters Parameters::read(const std::string &file, const std::vector<std::string> &overrides)
   {
     const ParameterFile text(file, overrides);
+    const auto          libraries = load_plugins(text, file, reference_keys);
 
     Parameters parameters;
     parameters.file = file;
@@ -361,6 +309,8 @@ namespace Nodus
     ParameterHandler prm; // holds references to the members of parameters
     parameters.add_parameters(prm);
     text.apply_to(prm);
+    text.refuse_idle_plugins();
+    parameters.additional_shared_libraries = libraries;
 
     const std::filesystem::path path(file);
     for (auto &body : parameters.bodies)
@@ -378,6 +328,7 @@ namespace Nodus
 
     resolve_names(parameters, text);
     parameters.check(text);
+    parameters.initialize_plugins(text);
     for (unsigned int b = 0; b < parameters.bodies.size(); ++b)
       if (const BodyParameters &body = parameters.bodies[b]; !body.generator.empty())
       {

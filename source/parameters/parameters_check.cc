@@ -25,93 +25,6 @@ namespace Nodus
     using ParameterChecks::Section;
     using ParameterChecks::share_faces;
 
-    void check_ogden(const Section &section, const MaterialParameters &material)
-    {
-      const auto &moduli = material.ogden_moduli, &exponents = material.ogden_exponents;
-      section.require(!moduli.empty(), "Ogden moduli", "is missing; give one number for each term");
-      section.require(exponents.size() == moduli.size(),
-                      "Ogden exponents",
-                      "has " + std::to_string(exponents.size()) + " entries for " + std::to_string(moduli.size()) +
-                          " entries of Ogden moduli; give one for each term");
-      section.require(std::count(exponents.begin(), exponents.end(), 0.) == 0,
-                      "Ogden exponents",
-                      "must not be 0; remove such a term");
-      section.require(
-          std::inner_product(moduli.begin(), moduli.end(), exponents.begin(), 0.) > 0.,
-          "Ogden moduli",
-          "times the exponents give a shear modulus that is not > 0; a modulus has the sign of its exponent");
-    }
-
-    void check_hardening(const Section &section, const MaterialParameters &material)
-    {
-      const auto &strains = material.hardening_strains, &stresses = material.hardening_stresses;
-      if (!strains.empty() || !stresses.empty())
-      {
-        section.require(material.yield_stress == 0. && material.hardening_modulus == 0. &&
-                            material.saturation_stress == 0. && material.saturation_rate == 0.,
-                        "Hardening strains",
-                        "is a table besides Yield stress, Hardening modulus or Saturation; remove one of the two");
-        section.require(strains.size() == stresses.size(),
-                        "Hardening stresses",
-                        "has " + std::to_string(stresses.size()) + " entries for " + std::to_string(strains.size()) +
-                            " entries of Hardening strains; give one for each");
-        section.require(strains[0] == 0. &&
-                            std::adjacent_find(strains.begin(), strains.end(), std::greater_equal<>()) == strains.end(),
-                        "Hardening strains",
-                        "must begin with 0 and increase");
-        section.require(stresses[0] > 0. &&
-                            std::adjacent_find(stresses.begin(), stresses.end(), std::greater<>()) == stresses.end(),
-                        "Hardening stresses",
-                        "must be > 0 and must not decrease; softening would depend on the mesh");
-        return;
-      }
-      section.require(material.yield_stress > 0., "Yield stress", "must be given and > 0, or a hardening table");
-      section.require((material.saturation_stress > 0.) == (material.saturation_rate > 0.),
-                      "Saturation stress",
-                      "and Saturation rate go together; give both or none");
-      section.require(material.saturation_stress == 0. || material.saturation_stress >= material.yield_stress,
-                      "Saturation stress",
-                      "must not be below Yield stress; softening would depend on the mesh");
-    }
-
-    void check(const Section &section, const MaterialParameters &material)
-    {
-      using Law = MaterialParameters::Law;
-      section.require(
-          material.poissons_ratio > -1. && material.poissons_ratio < 0.5,
-          "Poisson's ratio",
-          "must be > -1 and < 0.5; for nearly incompressible material take 0.499 and 'Volumetric treatment = "
-          "mean dilatation'");
-      section.require(material.mooney_rivlin_ratio == 0. || material.law == MaterialParameters::Law::mooney_rivlin,
-                      "Mooney-Rivlin ratio",
-                      "has no effect on this law; remove it or set Law = Mooney-Rivlin");
-      if (material.law == Law::ogden)
-      {
-        section.require(material.youngs_modulus == 0.,
-                        "Young's modulus",
-                        "follows from the moduli and exponents of Ogden; remove it");
-        check_ogden(section, material);
-      }
-      else
-      {
-        section.require(material.youngs_modulus > 0., "Young's modulus", "must be given and > 0");
-        for (const auto &[key, values] :
-             {std::pair<const char *, const std::vector<double> *>("Ogden moduli", &material.ogden_moduli),
-              std::pair<const char *, const std::vector<double> *>("Ogden exponents", &material.ogden_exponents)})
-          section.require(values->empty(), key, "has no effect on this law; remove it or set Law = Ogden");
-      }
-      if (material.law == Law::j2_plasticity)
-        check_hardening(section, material);
-      else
-        for (const auto &[key, given] : {Given("Yield stress", material.yield_stress != 0.),
-                                         Given("Hardening modulus", material.hardening_modulus != 0.),
-                                         Given("Saturation stress", material.saturation_stress != 0.),
-                                         Given("Saturation rate", material.saturation_rate != 0.),
-                                         Given("Hardening strains", !material.hardening_strains.empty()),
-                                         Given("Hardening stresses", !material.hardening_stresses.empty())})
-          section.require(!given, key, "has no effect on this law; remove it or set Law = J2 plasticity");
-    }
-
     /// What drives a rigid body has an effect on its free components, what moves it on the others.
     void check_free_motion(const Section &section, const BodyParameters &body)
     {
@@ -211,7 +124,7 @@ namespace Nodus
                       "Volumetric treatment",
                       "has no effect on a rigid body; remove it");
       Section{section.file, section.name + "/Material"}.require(
-          body.material.youngs_modulus == 0. && body.material.ogden_moduli.empty(),
+          body.material.youngs_modulus == 0. && body.material.ogden_moduli.empty() && !body.material.own_law.object,
           "Young's modulus",
           "has no meaning for a rigid body; remove the material, or 'Rigid = true'");
     }
@@ -303,6 +216,11 @@ namespace Nodus
       section.require(adaptivity.refine_fraction + adaptivity.coarsen_fraction <= 1.,
                       "Coarsen fraction",
                       "and Refine fraction together are more than 1; no cell can be in both");
+      if (adaptivity.indicator == AdaptivityParameters::Indicator::own)
+        for (const std::string &key : section.file.keys(section.name))
+          section.require(key != "Bulk weight" && key != "Contact weight",
+                          key,
+                          "has no effect on the indicator '" + adaptivity.own_indicator.name + "'; remove it");
       section.require(adaptivity.bulk_weight + adaptivity.contact_weight > 0. || adaptivity.interval == 0,
                       "Bulk weight",
                       "and Contact weight are both 0: there is no indicator; give one of them");

@@ -1,6 +1,8 @@
 #include "parameters/parameter_keys.h"
+#include "parameters/plugin_keys.h"
 #include <nodus/base/remedy.h>
 #include <nodus/parameters/parameters.h>
+#include <nodus/plugins/error_indicator.h>
 
 #include <algorithm>
 #include <limits>
@@ -31,6 +33,9 @@ namespace Nodus
                                                               {LinearSolverParameters::Type::direct, "direct"},
                                                               {LinearSolverParameters::Type::block, "block"},
                                                               {LinearSolverParameters::Type::condensed, "condensed"}};
+
+    const Names<AdaptivityParameters::Indicator> indicator_names = {
+        {AdaptivityParameters::Indicator::stress_and_contact, "stress and contact"}};
 
     const Names<AdaptivityParameters::Marking> marking_names = {
         {AdaptivityParameters::Marking::fixed_fraction, "fixed fraction"},
@@ -174,6 +179,14 @@ namespace Nodus
                         adaptivity.repetitions,
                         "Times that an increment is repeated on the refined mesh, until no cell is to be refined [-].",
                         count);
+      add_choice(prm,
+                 "Indicator",
+                 adaptivity.indicator,
+                 indicator_names,
+                 AdaptivityParameters::Indicator::own,
+                 adaptivity.own_indicator,
+                 "What says where the mesh is to be finer [-]. stress and contact: the estimated error of the stress, "
+                 "and the contact terms.");
       prm.add_parameter(
           "Bulk weight",
           adaptivity.bulk_weight,
@@ -202,7 +215,8 @@ namespace Nodus
                         fraction);
       prm.add_parameter("Target error",
                         adaptivity.target_error,
-                        "Estimated error of the stress relative to the stress, in the norm of the energy [-].",
+                        "Estimated error of the stress relative to the stress, in the norm of the energy [-]; of an "
+                        "indicator of one's own, the root of the sum of its squares [as it says].",
                         positive);
       prm.add_parameter(
           "Maximum level", adaptivity.maximum_level, "Refinements of a cell beyond those of its body [-].", count);

@@ -4,6 +4,7 @@
 #include "bulk/stress_error.h"
 #include "contact/contact_error.h"
 #include "mesh/hanging_nodes.h"
+#include "run/own_indicator.h"
 #include "run/state_vectors.h"
 
 #include <deal.II/base/mpi.h>
@@ -30,22 +31,38 @@ namespace Nodus
     const AdaptivityParameters &adaptivity = model_.parameters.adaptivity;
     const ContactInterface     &contact    = *model_.contact;
     RefinementIndicator         indicator(model_.bodies.triangulation());
-    const Vector                u = model_.with_ghosts(states_.now.unknowns.block(0));
-    const NodalStress           stress(model_.dof_handler, *model_.mapping, *model_.solid, u);
-    add_stress_error(adaptivity.bulk_weight, model_.dof_handler, *model_.solid, model_.materials, u, stress, indicator);
-    if (contact.surfaces().n_pairs() > 0 && contact.geometry() != nullptr)
+    const Vector                u       = model_.with_ghosts(states_.now.unknowns.block(0));
+    const bool                  touches = contact.surfaces().n_pairs() > 0 && contact.geometry() != nullptr;
+    if (is_own())
     {
-      add_contact_error(adaptivity.contact_weight,
-                        model_.pair_stiffness(),
-                        contact.surfaces(),
-                        *contact.geometry(),
-                        contact.fields(),
-                        stress,
-                        indicator);
-      if (adaptivity.slave_at_least_as_fine)
-        mark_coarse_slaves(contact.surfaces(), *contact.geometry(), indicator);
+      const unsigned int  n_cells = model_.bodies.triangulation().n_active_cells();
+      std::vector<double> pressure(n_cells, 0.);
+      if (touches)
+        pressure = largest_contact_pressure(contact.surfaces(), *contact.geometry(), contact.fields(), n_cells);
+      set_own_error(adaptivity.own_indicator, model_, u, pressure, indicator);
     }
+    else
+    {
+      const NodalStress stress(model_.dof_handler, *model_.mapping, *model_.solid, u);
+      add_stress_error(
+          adaptivity.bulk_weight, model_.dof_handler, *model_.solid, model_.materials, u, stress, indicator);
+      if (touches)
+        add_contact_error(adaptivity.contact_weight,
+                          model_.pair_stiffness(),
+                          contact.surfaces(),
+                          *contact.geometry(),
+                          contact.fields(),
+                          stress,
+                          indicator);
+    }
+    if (touches && adaptivity.slave_at_least_as_fine)
+      mark_coarse_slaves(contact.surfaces(), *contact.geometry(), indicator);
     return indicator;
+  }
+
+  bool MeshAdaptation::is_own() const
+  {
+    return model_.parameters.adaptivity.indicator == AdaptivityParameters::Indicator::own;
   }
 
   /// @returns whether a cell is to be refined or coarsened.
@@ -158,7 +175,11 @@ namespace Nodus
       take_state_along();
     std::ostringstream text;
     text.precision(3);
-    text << "estimated error " << 100. * error << " % of the stress: ";
+    if (is_own())
+      text << "indicator '" << model_.parameters.adaptivity.own_indicator.name << "', root of the sum of its squares "
+           << error << ": ";
+    else
+      text << "estimated error " << 100. * error << " % of the stress: ";
     if (changes)
       text << cells << " -> " << triangulation.n_global_active_cells() << " cells, " << unknowns << " -> "
            << model_.dof_handler.n_dofs() << " unknowns, " << model_.contact->surfaces().layout().n_slave_nodes

@@ -22,6 +22,7 @@ namespace Nodus
 
   private:
     RefinementIndicator estimate_error() const;
+    bool                is_own() const; ///< the indicator
     bool                mark(const RefinementIndicator &indicator);
     void                take_state_along();
 

@@ -132,6 +132,8 @@ namespace Nodus
   {
     set_conditions(increment.end);
     contact->begin_increment(increment.begin, increment.end, resolved_interference(increment.end));
+    for (auto &material : materials)
+      material->set_step(increment.end - increment.begin);
     stabilisation->set_increment(increment.begin, increment.end, increment.interval_begin, increment.interval_end);
   }
 

@@ -15,6 +15,11 @@ string(REPLACE "${source_folder}/" "" message "${message}")
 # ... nor on the machine.
 string(REGEX REPLACE "more than the [0-9.e+]+ GB" "more than the N GB" message "${message}")
 
+# ... nor on the versions at hand.
+string(REGEX REPLACE
+  "nodus [0-9.]+, deal.II [0-9.]+[-a-z0-9.]*(, (64-bit indices|libc\\+\\+|old ABI of libstdc\\+\\+|Debug|Release))*"
+  "nodus N, deal.II N" message "${message}")
+
 if(LAUNCHER)
   string(REGEX MATCHALL "nodus: [^\n]*\n" message "${message}")
   string(REPLACE ";nodus: " "nodus: " message "${message}")

@@ -180,6 +180,7 @@ namespace
   void print(const Parameters &parameters)
   {
     print("title", parameters.title);
+    print("additional shared libraries", parameters.additional_shared_libraries);
     print("degree", parameters.degree);
     for (const auto &body : parameters.bodies)
       print(body);
@@ -214,6 +215,7 @@ namespace
     print("initial cycles", adaptivity.initial_cycles);
     print("contact distance", adaptivity.contact_distance);
     print("repetitions", adaptivity.repetitions);
+    print_choice("indicator", adaptivity.indicator);
     print("bulk weight", adaptivity.bulk_weight);
     print("contact weight", adaptivity.contact_weight);
     print("marking", static_cast<int>(adaptivity.marking));

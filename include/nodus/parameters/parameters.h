@@ -3,6 +3,7 @@
 
 #include <nodus/base/types.h>
 #include <nodus/parameters/solution_parameters.h>
+#include <nodus/plugins/plugin.h>
 
 #include <functional>
 #include <map>
@@ -17,6 +18,7 @@ namespace dealii
 
 namespace Nodus
 {
+  class MaterialLaw;
   class ParameterFile;
   struct DeclaredKey;
   class FrictionLaw;
@@ -86,7 +88,8 @@ namespace Nodus
       neo_hookean,
       mooney_rivlin,
       ogden,
-      j2_plasticity
+      j2_plasticity,
+      own ///< #own_law
     };
     Law    law                 = Law::neo_hookean;
     double youngs_modulus      = 0.;  ///< initial E > 0 [pressure], to be given; Ogden: follows from the moduli
@@ -103,6 +106,8 @@ namespace Nodus
     double              saturation_rate   = 0.; ///< [-]
     std::vector<double> hardening_strains;      ///< equivalent plastic strains from 0, increasing [-]
     std::vector<double> hardening_stresses;     ///< yield stresses at these, not decreasing [pressure]
+
+    Chosen<MaterialLaw> own_law; ///< one that a plug-in has registered, or that the program makes
   };
 
   struct BodyParameters
@@ -316,7 +321,8 @@ namespace Nodus
   {
     std::string                              file; ///< the .prm or .json file, for messages
     std::string                              title;
-    unsigned int                             degree = 1; ///< of the displacement, 1 or 2
+    std::vector<std::string>                 additional_shared_libraries; ///< plug-ins that read() has loaded
+    unsigned int                             degree = 1;                  ///< of the displacement, 1 or 2
     std::vector<BodyParameters>              bodies;
     std::vector<BoundaryConditionParameters> boundary_conditions;
     std::vector<ContactPairParameters>       contact_pairs;
@@ -330,7 +336,13 @@ namespace Nodus
     AdaptivityParameters                     adaptivity;
     OutputParameters                         output;
 
-    /// Strict parse of @p file after applying @p overrides ("Section/Key=value"). Throws InputError.
+    /// Loads the plug-ins that @p file or @p overrides name, for explain() and documentation(). @throws InputError
+    /// @returns their files
+    static std::vector<std::string> load_libraries(const std::string              &file,
+                                                   const std::vector<std::string> &overrides = {});
+
+    /// Strict parse of @p file after applying @p overrides ("Section/Key=value"), with load_libraries(). Throws
+    /// InputError.
     static Parameters read(const std::string &file, const std::vector<std::string> &overrides = {});
 
     /// Values of the keys that may not change from a checkpoint to the restart, by "Section/Key": discretization,
@@ -353,6 +365,9 @@ namespace Nodus
 
     /// Everything that can be seen without a mesh. @throws InputError
     void check(const ParameterFile &file) const;
+
+    /// The classes that are chosen get to work. @throws InputError
+    void initialize_plugins(const ParameterFile &file);
   };
 
   /// Choices as they are written in the parameter file.

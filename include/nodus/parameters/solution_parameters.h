@@ -1,6 +1,8 @@
 #ifndef nodus_parameters_solution_parameters_h
 #define nodus_parameters_solution_parameters_h
 
+#include <nodus/plugins/plugin.h>
+
 #include <string>
 #include <vector>
 
@@ -9,6 +11,7 @@
 
 namespace Nodus
 {
+  class ErrorIndicator;
   enum class Remedy : unsigned int;
 
   struct LoopParameters
@@ -69,6 +72,11 @@ namespace Nodus
 
   struct AdaptivityParameters
   {
+    enum class Indicator
+    {
+      stress_and_contact, ///< of the error of the stress, with the contact terms
+      own                 ///< #own_indicator
+    };
     enum class Marking
     {
       fixed_fraction,
@@ -78,6 +86,7 @@ namespace Nodus
     unsigned int initial_cycles         = 0;  ///< before the first increment, near expected contact
     double       contact_distance       = 0.; ///< gaps up to here are expected to close [length]; 0: a slave face
     unsigned int repetitions            = 0;  ///< of an increment, until nothing is to be refined
+    Indicator    indicator              = Indicator::stress_and_contact;
     double       bulk_weight            = 1.; ///< of the stress against the recovered one
     double       contact_weight         = 1.; ///< of the contact indicator
     Marking      marking                = Marking::fixed_fraction;
@@ -87,6 +96,8 @@ namespace Nodus
     unsigned int maximum_level          = 2;    ///< refinements beyond those of the body
     double       maximum_unknowns       = 1e6;  ///< displacement degrees of freedom
     bool         slave_at_least_as_fine = true;
+
+    Chosen<ErrorIndicator> own_indicator; ///< one that a plug-in has registered, or that the program makes
   };
 
   struct OutputParameters

@@ -1,13 +1,7 @@
 # Installs what BINARY_DIR holds below FOLDER, compiles every public header alone, and builds and runs the example program
-# against the copy. cmake -D BINARY_DIR=... -D SOURCE_DIR=... -D FOLDER=... -D BUILD_TYPE=... -P run.cmake
+# against the copy. cmake -D BINARY_DIR=... -D SOURCE_DIR=... -D FOLDER=... -D BUILD_TYPE=... -P own_program.cmake
 
-function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE _code OUTPUT_VARIABLE _log ERROR_VARIABLE _log)
-  if(NOT _code EQUAL 0)
-    message(FATAL_ERROR "${_log}\nexit code ${_code}: ${ARGN}")
-  endif()
-  set(log "${_log}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run_or_fail.cmake)
 
 file(REMOVE_RECURSE ${FOLDER})
 run(${CMAKE_COMMAND} --install ${BINARY_DIR} --prefix ${FOLDER}/copy)
