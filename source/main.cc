@@ -36,7 +36,8 @@ namespace
   --explain WORDS            prints what the keys mean that have WORDS in their path, their choices or else their meaning,
                              e.g. --explain "friction" or --explain traction
   --document                 prints the reference of all parameters (Markdown)
-                             with case.prm beside it, both know the plug-ins that it loads (Additional shared libraries)
+  --document-json            prints it for programs (JSON)
+                             with case.prm beside it, all three know the plug-ins that it loads (Additional shared libraries)
   --version                  prints the versions of nodus and of its libraries
   --help                     prints this text
 
@@ -48,7 +49,7 @@ namespace
     std::string              file;
     std::vector<std::string> overrides;
     bool                     validate = false, check_law = false, restart = false, profile = false;
-    std::string              print;   ///< --document, --explain, --version or --help
+    std::string              print;   ///< --document, --document-json, --explain, --version or --help
     std::string              explain; ///< the key
   };
 
@@ -58,7 +59,7 @@ namespace
     for (std::size_t i = 0; i < arguments.size(); ++i)
     {
       const std::string &argument = arguments[i];
-      if (argument == "--document" || argument == "--version" || argument == "--help")
+      if (argument == "--document" || argument == "--document-json" || argument == "--version" || argument == "--help")
         command.print = argument;
       else if (argument == "--explain")
       {
@@ -118,10 +119,12 @@ namespace
 
   std::string answer(const CommandLine &command)
   {
-    if (!command.file.empty() && (command.print == "--document" || command.print == "--explain"))
+    if (!command.file.empty() && command.print != "--version" && command.print != "--help")
       Nodus::Parameters::load_libraries(command.file, command.overrides);
     if (command.print == "--document")
       return Nodus::Parameters::documentation();
+    if (command.print == "--document-json")
+      return Nodus::Parameters::documentation_json();
     if (command.print == "--explain")
       return Nodus::Parameters::explain(command.explain);
     return command.print == "--version" ? versions() : usage;

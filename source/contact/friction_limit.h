@@ -45,7 +45,8 @@ namespace Nodus
     /// The law of the user's, or null.
     const FrictionLaw *own_law() const
     {
-      return pair_.own_friction_law.get();
+      return pair_.friction_law == ContactPairParameters::FrictionLaw::own ? pair_.own_friction_law.object.get()
+                                                                           : nullptr;
     }
 
     /// mu lambda_s <= 0: minus the limit [pressure], and its derivative with respect to @p lambda (eqs. F1 and F2).

@@ -87,9 +87,7 @@ namespace Nodus
 
   std::shared_ptr<const PressureGapLaw> make_pressure_gap_law(const ContactPairParameters &pair)
   {
-    if (pair.own_pressure_gap_law)
-      return pair.own_pressure_gap_law;
-    using Law = PressureGapParameters::Law;
+    using Law                      = PressureGapParameters::Law;
     const PressureGapParameters &p = pair.pressure_gap;
     switch (p.law)
     {
@@ -101,6 +99,8 @@ namespace Nodus
         return std::make_shared<Exponential>(p.stiffness, p.stiffening_length);
       case Law::table:
         return std::make_shared<Table>(p.overclosures, p.pressures);
+      case Law::own:
+        return p.own_law.object;
     }
     return nullptr;
   }

@@ -44,50 +44,6 @@ namespace Nodus
       return section.empty() ? "at the top level" : "in '" + section + "'";
     }
 
-    /// What separates the entries of deal.II's "[List of <...> of length 0...3 (inclusive) separated by <;>]"; 0: no
-    /// list.
-    char separator(const std::string &description)
-    {
-      static const std::regex pattern(".* separated by <(.)>\\]");
-      std::smatch             match;
-      if (std::regex_match(description, match, pattern))
-        return match[1].str()[0];
-      return description.compare(0, 6, "[List ") == 0 ? ',' : '\0';
-    }
-
-    /// deal.II's "[Double 0...MAX_DOUBLE (inclusive)]" and the like in words.
-    std::string in_words(const std::string &description)
-    {
-      static const std::regex list("\\[List of <(.*)> of length (\\d+)\\.\\.\\.(\\d+) .*\\]"),
-          selection("\\[Selection (.*?) ?\\]"), range(".* (\\S+)\\.\\.\\.(\\S+) \\(inclusive\\)\\]"), bar("\\|");
-      std::smatch match;
-      if (std::regex_match(description, match, list))
-        return (match[2] == match[3] ? match[2].str() + " entries" : "a list") + " separated by '" +
-               separator(description) + "'" + (match[1] == "[Anything]" ? "" : ", each " + in_words(match[1]));
-      if (std::regex_match(description, match, selection))
-        return "one of: " + std::regex_replace(match[1].str(), bar, ", ");
-      if (description == "[Bool]")
-        return "true or false";
-      if (description == "[Anything]")
-        return "text";
-      if (description == "[Id or name]")
-        return "a whole number >= 0 or a name";
-
-      std::string words = description.compare(0, 8, "[Integer") == 0 ? "a whole number" : "a number";
-      if (std::regex_match(description, match, range))
-      {
-        const bool lower = match[1] != "-MAX_DOUBLE" && match[1] != "-2147483648";
-        const bool upper = match[2] != "MAX_DOUBLE" && match[2] != "2147483647";
-        if (match[1] == "2.22507e-308") // the smallest positive double, because patterns have no open end
-          words += " > 0";
-        else if (lower)
-          words += " >= " + match[1].str();
-        if (upper)
-          words += (lower ? " and <= " : " <= ") + match[2].str();
-      }
-      return words;
-    }
-
     void collect(const boost::property_tree::ptree &tree, const std::string &section, std::vector<DeclaredKey> &keys)
     {
       for (const auto &[name, node] : tree)
@@ -97,9 +53,8 @@ namespace Nodus
           keys.push_back({section,
                           name,
                           node.get<std::string>("default_value"),
-                          in_words(pattern),
-                          node.get<std::string>("documentation"),
-                          separator(pattern)});
+                          ValuePattern(pattern),
+                          node.get<std::string>("documentation")});
         }
         else
           collect(node, join(section, name), keys);
@@ -313,11 +268,11 @@ namespace Nodus
         throw InputError(entry.origin + ": unknown key '" + entry.key + "' " + in_section(entry.section) +
                          (elsewhere.empty() ? suggestion(entry.key, keys[entry.section]) : did_you_mean(elsewhere)));
       }
-      if (!entry.list.empty() && found->separator == '\0')
-        refuse(entry.section, entry.key, "is a list; give " + found->allowed);
+      if (!entry.list.empty() && found->pattern.separator == '\0')
+        refuse(entry.section, entry.key, "is a list; give " + found->pattern.in_words());
       std::string value = entry.value;
       for (const auto &item : entry.list)
-        value += (value.empty() ? "" : std::string(1, found->separator) + ' ') + item;
+        value += (value.empty() ? "" : std::string(1, found->pattern.separator) + ' ') + item;
 
       const auto path = dealii::Utilities::split_string_list(entry.section, '/');
       for (const auto &name : path)
@@ -328,7 +283,7 @@ namespace Nodus
       }
       catch (const dealii::ExceptionBase &)
       {
-        refuse(entry.section, entry.key, "is '" + value + "'; give " + found->allowed);
+        refuse(entry.section, entry.key, "is '" + value + "'; give " + found->pattern.in_words());
       }
       for (unsigned int i = 0; i < path.size(); ++i)
         prm.leave_subsection();

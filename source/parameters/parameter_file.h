@@ -1,6 +1,8 @@
 #ifndef nodus_parameters_parameter_file_h
 #define nodus_parameters_parameter_file_h
 
+#include "parameters/value_pattern.h"
+
 #include <boost/property_tree/ptree_fwd.hpp>
 
 #include <iosfwd>
@@ -21,12 +23,11 @@ namespace Nodus
   /// What a ParameterHandler declares, in the order of declaration.
   struct DeclaredKey
   {
-    std::string section; ///< "Body 1/Material"; empty at the top
-    std::string key;
-    std::string default_value;
-    std::string allowed; ///< in words: "a number >= 0", "one of: direct, block"
-    std::string documentation;
-    char        separator; ///< of its list; 0 when the key takes no list
+    std::string  section; ///< "Body 1/Material"; empty at the top
+    std::string  key;
+    std::string  default_value;
+    ValuePattern pattern; ///< what it takes
+    std::string  documentation;
 
     /// "Body 1/Name"
     std::string path() const

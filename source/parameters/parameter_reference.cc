@@ -21,6 +21,12 @@ namespace Nodus
       return std::regex_replace(std::regex_replace(section, numbered, " `<n>`"), std::regex("/"), " / ");
     }
 
+    /// "Body 1/Name" -> "Body <n>/Name"
+    std::string any_number_in(const std::string &path)
+    {
+      return std::regex_replace(path, numbered, " <n>");
+    }
+
     std::string lower_case(std::string text)
     {
       std::transform(text.begin(), text.end(), text.begin(), [](const unsigned char c) { return std::tolower(c); });
@@ -44,12 +50,14 @@ namespace Nodus
       return std::all_of(words.begin(), words.end(), [&](const std::string &word) { return has(text, word); });
     }
 
-    /// "direct, block" of "one of: direct, block"; empty where there is no choice.
+    /// "direct, block"; empty where there is no choice.
     std::string choices(const DeclaredKey &key)
     {
-      const std::string before = "one of: ";
-      const auto        begin  = key.allowed.find(before);
-      return begin == std::string::npos ? "" : key.allowed.substr(begin + before.size());
+      const ValuePattern &pattern = key.pattern.entries.empty() ? key.pattern : key.pattern.entries[0];
+      std::string         text;
+      for (const std::string &choice : pattern.choices)
+        text += (text.empty() ? "" : ", ") + choice;
+      return text;
     }
 
     /// All that is to be said about the keys that are @p meant.
@@ -59,8 +67,8 @@ namespace Nodus
       std::string text;
       for (const auto &k : keys)
         if (meant(k))
-          text += (text.empty() ? "" : "\n") + std::regex_replace(k.path(), numbered, " <n>") + "\n  default  " +
-                  (k.default_value.empty() ? "(empty)" : k.default_value) + "\n  allowed  " + k.allowed +
+          text += (text.empty() ? "" : "\n") + any_number_in(k.path()) + "\n  default  " +
+                  (k.default_value.empty() ? "(empty)" : k.default_value) + "\n  allowed  " + k.pattern.in_words() +
                   "\n  unit     " + k.unit() + "\n  meaning  " + k.documentation + '\n';
       return text;
     }
@@ -157,7 +165,7 @@ a value depends on time, `pi` and the functions of muParser and deal.II's Functi
         text += "\n## " + (key.section.empty() ? "Top level" : title_of(key.section)) +
                 "\n\n| Key | Default | Allowed | Meaning |\n|---|---|---|---|\n";
       section = key.section;
-      text += '|' + cell(key.key) + '|' + cell(key.default_value) + '|' + cell(key.allowed) + '|' +
+      text += '|' + cell(key.key) + '|' + cell(key.default_value) + '|' + cell(key.pattern.in_words()) + '|' +
               cell(key.documentation) + "|\n";
     }
     text += "\n## Generators\n\nAll arguments are to be given, separated by ':'.\n\n"
@@ -165,5 +173,26 @@ a value depends on time, `pi` and the functions of muParser and deal.II's Functi
     for (const std::string &name : Generators::names())
       text += '|' + cell(name) + '|' + cell(Generators::arguments(name)) + "| `" + Generators::example(name) + "` |\n";
     return text;
+  }
+
+  std::string ParameterReference::json(const std::vector<DeclaredKey> &keys)
+  {
+    std::string text = "{\n\"numbered\": [";
+    for (const auto &key : keys)
+      if (std::smatch match; std::regex_search(key.section, match, std::regex("^([^/]*) 1$")))
+        if (const std::string name = json_text(match[1]); text.find(name) == std::string::npos)
+          text += (text.back() == '[' ? "" : ", ") + name;
+    text += "],\n\"keys\": [";
+    for (const auto &key : keys)
+      text += (text.back() == '[' ? "\n" : ",\n") + ("{\"path\": " + json_text(any_number_in(key.path()))) +
+              ", \"default\": " + json_text(key.default_value) + ", \"type\": " + key.pattern.in_json() +
+              ", \"allowed\": " + json_text(key.pattern.in_words()) + ", \"unit\": " + json_text(key.unit()) +
+              ", \"meaning\": " + json_text(key.documentation) + '}';
+    text += "\n],\n\"generators\": [";
+    for (const std::string &name : Generators::names())
+      text += (text.back() == '[' ? "\n" : ",\n") + ("{\"name\": " + json_text(name)) +
+              ", \"arguments\": " + json_text(Generators::arguments(name)) +
+              ", \"example\": " + json_text(Generators::example(name)) + '}';
+    return text + "\n]\n}\n";
   }
 } // namespace Nodus

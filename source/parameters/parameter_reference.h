@@ -14,6 +14,9 @@ namespace Nodus
     /// The whole reference in Markdown, as Parameters::documentation() gives it.
     std::string page(const std::vector<DeclaredKey> &keys);
 
+    /// The same for programs, as Parameters::documentation_json() gives it.
+    std::string json(const std::vector<DeclaredKey> &keys);
+
     /// What is to be said about the keys that @p wanted means, as Parameters::explain() gives it.
     /// @throws InputError, with the nearest names, where it means none
     std::string explain(const std::vector<DeclaredKey> &keys, const std::string &wanted);

@@ -6,6 +6,8 @@
 #include "parameters/plugin_keys.h"
 #include <nodus/parameters/parameters.h>
 #include <nodus/plugins/error_indicator.h>
+#include <nodus/plugins/friction_law.h>
+#include <nodus/plugins/pressure_gap_law.h>
 
 #include <deal.II/base/utilities.h>
 
@@ -64,7 +66,7 @@ namespace Nodus
           "Gmsh file of hexahedra of first or second order (8, 20 or 27 nodes) [-], relative to the folder of "
           "the .prm file. The curved cells of a second-order file are kept under refinement; with Degree "
           "= 1 only the corners of the refined cells count. A body has either a mesh file or a generator.",
-          Patterns::Anything());
+          Patterns::FileName());
       add_ids(prm,
               "Volume ids",
               body.volume_ids,
@@ -262,6 +264,11 @@ namespace Nodus
     return ParameterReference::page(reference_keys());
   }
 
+  std::string Parameters::documentation_json()
+  {
+    return ParameterReference::json(reference_keys());
+  }
+
   std::string Parameters::explain(const std::string &key)
   {
     return ParameterReference::explain(reference_keys(), key);
@@ -284,6 +291,15 @@ namespace Nodus
   {
     for (unsigned int b = 0; b < bodies.size(); ++b)
       ParameterChecks::initialize({file, "Body " + std::to_string(b + 1) + "/Material"}, bodies[b].material);
+    for (unsigned int p = 0; p < contact_pairs.size(); ++p)
+    {
+      const ContactPairParameters   &pair    = contact_pairs[p];
+      const ParameterChecks::Section section = {file, "Contact pair " + std::to_string(p + 1)};
+      if (pair.friction_law == ContactPairParameters::FrictionLaw::own)
+        ParameterChecks::initialize(section, pair.own_friction_law.name, *pair.own_friction_law.object);
+      if (pair.pressure_gap.law == PressureGapParameters::Law::own)
+        ParameterChecks::initialize(section, pair.pressure_gap.own_law.name, *pair.pressure_gap.own_law.object);
+    }
     if (adaptivity.indicator == AdaptivityParameters::Indicator::own)
       ParameterChecks::initialize(
           {file, "Adaptivity"}, adaptivity.own_indicator.name, *adaptivity.own_indicator.object);

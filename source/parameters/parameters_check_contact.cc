@@ -77,7 +77,8 @@ namespace Nodus
     void check_friction(const Section &section, const ContactPairParameters &pair)
     {
       const bool tied    = pair.contact_law == ContactPairParameters::ContactLaw::tied,
-                 coulomb = pair.friction_coefficient > 0.;
+                 coulomb = pair.friction_coefficient > 0.,
+                 own     = pair.friction_law == ContactPairParameters::FrictionLaw::own;
       for (const auto &[key, given] :
            {Given("Friction coefficient", coulomb),
             Given("Shear limit", pair.shear_limit > 0.),
@@ -96,6 +97,13 @@ namespace Nodus
         section.require(pair.shear_limit > 0., "Shear limit", "must be given and > 0: it is the friction of Tresca");
         section.require(!coulomb, "Friction coefficient", "has no effect on 'Friction law = Tresca'; remove it");
       }
+      else if (own)
+      {
+        section.require(!tied, "Friction law", "has no effect on a tied pair; remove it");
+        const std::string no_effect = "has no effect on 'Friction law = " + pair.own_friction_law.name + "'; remove it";
+        section.require(!coulomb, "Friction coefficient", no_effect);
+        section.require(pair.friction_factor == "1", "Friction factor", no_effect);
+      }
       else
         section.require(coulomb || pair.shear_limit == 0.,
                         "Shear limit",
@@ -106,7 +114,7 @@ namespace Nodus
       section.require(second || !direction,
                       "Friction direction",
                       "has no effect without a Second friction coefficient; remove it or give that");
-      section.require(pair.elastic_slip == 0. || coulomb ||
+      section.require(pair.elastic_slip == 0. || coulomb || own ||
                           pair.friction_law == ContactPairParameters::FrictionLaw::tresca,
                       "Elastic slip",
                       "has no effect without friction; give a Friction coefficient");
@@ -125,7 +133,8 @@ namespace Nodus
       section.require(gap.law == Law::hard || pair.contact_law != ContactPairParameters::ContactLaw::tied,
                       "Pressure-gap law",
                       "has no effect on a tied pair; remove it");
-      const std::string law = "'Pressure-gap law = " + text_of(gap.law) + "'";
+      const std::string law =
+          "'Pressure-gap law = " + (gap.law == Law::own ? gap.own_law.name : text_of(gap.law)) + "'";
       for (const auto &[key, given, used] :
            {std::make_tuple(
                 "Contact stiffness", gap.stiffness > 0., gap.law == Law::linear || gap.law == Law::exponential),

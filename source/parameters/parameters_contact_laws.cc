@@ -1,4 +1,6 @@
-#include "parameters/parameter_keys.h"
+#include "parameters/plugin_keys.h"
+#include <nodus/plugins/friction_law.h>
+#include <nodus/plugins/pressure_gap_law.h>
 
 // The keys of the laws of a contact pair: contact, pressure-gap law, friction.
 
@@ -49,6 +51,8 @@ namespace Nodus
                  "Friction law",
                  pair.friction_law,
                  friction_law_names,
+                 ContactPairParameters::FrictionLaw::own,
+                 pair.own_friction_law,
                  "Limit of the friction traction [-]: friction coefficient times pressure, or the shear limit.");
       prm.add_parameter("Friction coefficient",
                         pair.friction_coefficient,
@@ -88,6 +92,8 @@ namespace Nodus
                  "Pressure-gap law",
                  gap.law,
                  pressure_gap_names,
+                 PressureGapParameters::Law::own,
+                 gap.own_law,
                  "Overclosure d, minus the gap, of surfaces under the pressure p [-]: hard, none; linear, p = k d; "
                  "exponential, p = k l (exp(d/l) - 1); table. For coatings, gaskets and rough surfaces that the mesh "
                  "does not show.");

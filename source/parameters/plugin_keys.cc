@@ -15,7 +15,6 @@ namespace Nodus
     /// Names of sections, keys and choices of nodus itself.
     std::vector<std::string> taken_names(const std::vector<DeclaredKey> &keys)
     {
-      const std::string        choice = "one of: ";
       std::vector<std::string> names;
       for (const DeclaredKey &key : keys)
       {
@@ -24,10 +23,9 @@ namespace Nodus
           continue; // of another plug-in
         names.insert(names.end(), sections.begin(), sections.end());
         names.push_back(key.key);
-        if (const auto begin = key.allowed.find(choice); begin != std::string::npos)
-          for (const auto &name : dealii::Utilities::split_string_list(key.allowed.substr(begin + choice.size()), ','))
-            if (!Plugins::is_registered(name))
-              names.push_back(name);
+        for (const std::string &name : key.pattern.choices)
+          if (!Plugins::is_registered(name))
+            names.push_back(name);
       }
       return names;
     }

@@ -52,7 +52,8 @@ namespace Nodus
       {
         const auto &pair = model.parameters.contact_pairs[surfaces.pair(s)];
         is_closed        = true;
-        rubs             = rubs || pair.friction_coefficient > 0. || pair.shear_limit > 0.;
+        rubs             = rubs || pair.friction_coefficient > 0. || pair.shear_limit > 0. ||
+               pair.friction_law == ContactPairParameters::FrictionLaw::own;
       }
     is_closed = dealii::Utilities::MPI::logical_or(is_closed, model.communicator);
     rubs      = dealii::Utilities::MPI::logical_or(rubs, model.communicator);

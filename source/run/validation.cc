@@ -147,6 +147,8 @@ namespace Nodus
         text << "no slip";
       else if (pair.friction_law == Pair::FrictionLaw::tresca)
         text << "Tresca friction " << pair.shear_limit;
+      else if (pair.friction_law == Pair::FrictionLaw::own)
+        text << "friction law " << pair.own_friction_law.name;
       else if (pair.friction_coefficient > 0.)
       {
         text << "friction coefficient " << pair.friction_coefficient;
@@ -162,7 +164,10 @@ namespace Nodus
       if (pair.elastic_slip > 0.)
         text << " over an elastic slip of " << pair.elastic_slip;
       if (pair.pressure_gap.law != PressureGapParameters::Law::hard)
-        text << ", " << text_of(pair.pressure_gap.law) << " pressure-gap law";
+        text << ", "
+             << (pair.pressure_gap.law == PressureGapParameters::Law::own ? pair.pressure_gap.own_law.name
+                                                                          : text_of(pair.pressure_gap.law))
+             << " pressure-gap law";
       return text.str();
     }
 

@@ -182,13 +182,16 @@ namespace Nodus
       hard,        ///< d = 0
       linear,      ///< p = k d
       exponential, ///< p = k l (exp(d/l) - 1)
-      table
+      table,
+      own ///< #own_law
     };
     Law                 law               = Law::hard;
     double              stiffness         = 0.; ///< k > 0 [pressure/length]
     double              stiffening_length = 0.; ///< l > 0 [length]
     std::vector<double> overclosures;           ///< of the table, not decreasing [length]
     std::vector<double> pressures;              ///< at these, from 0, increasing [pressure]
+
+    Chosen<PressureGapLaw> own_law; ///< one that a plug-in has registered, or that the program makes
   };
 
   struct ContactPairParameters
@@ -252,7 +255,8 @@ namespace Nodus
     enum class FrictionLaw
     {
       coulomb,
-      tresca
+      tresca,
+      own ///< #own_friction_law
     };
     enum class InitialOverclosure
     {
@@ -281,23 +285,21 @@ namespace Nodus
     double                elastic_slip    = 0.;             ///< at which friction reaches its limit [length]
     PressureGapParameters pressure_gap;
 
-    /// What a program or a plug-in gives instead of the shipped laws.
-    std::shared_ptr<const Nodus::FrictionLaw> own_friction_law;
-    std::shared_ptr<const PressureGapLaw>     own_pressure_gap_law;
-    double                                    normal_augmentation_factor = 1.; ///< times E/h gives rho_n
-    double         tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
-    Scheme         scheme                         = Scheme::averaged;
-    Integration    integration                    = Integration::segment;  ///< averaged scheme
-    QuadratureRule quadrature_rule                = QuadratureRule::gauss; ///< integration points, averaged by face
-    unsigned int   quadrature_points              = 0; ///< per direction of a slave face; 0 = automatic
-    SurfaceMeasure surface_measure                = SurfaceMeasure::current;
-    Weights        weights                        = Weights::nodal_quadrature;
-    Surface        surface                        = Surface::smoothed;
-    Normal         normal                         = Normal::averaged;
-    double         search_distance                = 0.;   ///< [length]; 0 = automatic
-    double         projection_tolerance           = 0.05; ///< overhang accepted, in face sizes
-    Start          start;
-    StatusTest     status_test = StatusTest::weighted;
+    Chosen<Nodus::FrictionLaw> own_friction_law; ///< one that a plug-in has registered, or that the program makes
+    double                     normal_augmentation_factor     = 1.;  ///< times E/h gives rho_n
+    double                     tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
+    Scheme                     scheme                         = Scheme::averaged;
+    Integration                integration                    = Integration::segment; ///< averaged scheme
+    QuadratureRule             quadrature_rule      = QuadratureRule::gauss; ///< integration points, averaged by face
+    unsigned int               quadrature_points    = 0; ///< per direction of a slave face; 0 = automatic
+    SurfaceMeasure             surface_measure      = SurfaceMeasure::current;
+    Weights                    weights              = Weights::nodal_quadrature;
+    Surface                    surface              = Surface::smoothed;
+    Normal                     normal               = Normal::averaged;
+    double                     search_distance      = 0.;   ///< [length]; 0 = automatic
+    double                     projection_tolerance = 0.05; ///< overhang accepted, in face sizes
+    Start                      start;
+    StatusTest                 status_test = StatusTest::weighted;
 
     MasterSurfaceParameters master_surface; ///< instead of the master faces; keys "Master surface", ...
 
@@ -351,6 +353,12 @@ namespace Nodus
 
     /// The reference of all parameters in Markdown (`nodus --document`).
     static std::string documentation();
+
+    /// The same in JSON (`nodus --document-json`): "numbered" sections, "keys" with path ("Body <n>/Name"), default,
+    /// type, allowed (in words), unit and meaning, "generators" with arguments and example. A type has a "kind": text,
+    /// file, bool, integer, number (with least or above, most), id or name, choice (with choices), list (with
+    /// separator, lengths least and most, of: the type of its entries).
+    static std::string documentation_json();
 
     /// Section, default, allowed values, unit and meaning of every key whose path ("Contact pair 1/Scheme") contains
     /// @p key, in upper or lower case (`nodus --explain`). @throws InputError, with the nearest keys, without any.

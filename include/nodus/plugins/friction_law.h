@@ -2,6 +2,7 @@
 #define nodus_plugins_friction_law_h
 
 #include <nodus/base/types.h>
+#include <nodus/plugins/plugin.h>
 
 #include <array>
 
@@ -23,10 +24,10 @@ namespace Nodus
   ///
   /// Pressure acts at once, and with its derivative in the tangent; slip, rate and state are those of the last iterate
   /// of the threshold loop, which ends when tau no longer changes. The law is asked on every rank for its own sites.
-  class FrictionLaw
+  class FrictionLaw : public Plugin
   {
   public:
-    virtual ~FrictionLaw() = default;
+    static constexpr const char *kind = "friction law";
 
     /// tau >= 0 [pressure]
     virtual double limit(const FrictionPoint &point) const = 0;
@@ -52,5 +53,8 @@ namespace Nodus
     }
   };
 } // namespace Nodus
+
+/// NODUS_REGISTER_FRICTION(RunningIn, "running in", "Coulomb's law with a coefficient that falls as surfaces wear.");
+#define NODUS_REGISTER_FRICTION(Class, name, meaning) NODUS_REGISTER(Nodus::FrictionLaw, Class, name, meaning)
 
 #endif
