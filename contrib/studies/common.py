@@ -1,19 +1,15 @@
-"""What the studies share: runs of nodus, their results, fitted orders, tables and plots."""
+"""What the studies share: runs of nodus, fitted orders, tables and plots."""
 
-import csv
-import json
+import functools
 import os
-import re
-import resource
-import subprocess
 import sys
 
 import numpy as np
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(FOLDER))
-sys.path.insert(0, os.path.join(ROOT, "contrib", "plot"))
-import results  # noqa: E402
+sys.path.insert(0, os.path.join(ROOT, "contrib", "python"))
+import nodus  # noqa: E402
 
 NODUS = os.environ.get("NODUS", os.path.join(ROOT, "build-release", "nodus"))
 # results of the runs, not kept
@@ -31,44 +27,16 @@ SCHEMES = {
 THREE_LOOPS = {f"{loop} loop/Mode": "fixed point" for loop in ("Geometry", "Threshold", "Status")}
 
 
-class Run:
-    """One finished run: exit code, log, CPU seconds, and the tables and surfaces that it wrote."""
-
-    def __init__(self, folder, code, log, cpu, memory):
-        self.folder, self.code, self.log, self.cpu, self.memory = folder, code, log, cpu, memory
-
-    @property
-    def converged(self):
-        return self.code == 0
-
-    def contact(self):
-        """Rows of contact.csv as dictionaries of numbers where they are numbers."""
-        rows = []
-        with open(os.path.join(self.folder, "contact.csv")) as file:
-            for row in csv.DictReader(file):
-                rows.append({re.sub(r" \[.*\]$", "", key): _number(value) for key, value in row.items()})
-        return rows
-
-    def surface(self, time=None):
-        """The contact surfaces (results.Mesh) at a time, the last by default."""
-        return results.Results(self.folder).mesh("contact", time)
-
-    def body(self, time=None):
-        return results.Results(self.folder).mesh("bodies", time)
-
-    def timing(self):
-        """CPU seconds of all ranks by phase, and "linear solver" for its two phases."""
-        with open(os.path.join(self.folder, "profile.json")) as file:
-            found = {phase["name"]: phase["cpu_seconds"] for phase in json.load(file)["phases"]}
-        found["linear solver"] = found["solver set-up"] + found["solver iterations"]
-        return found
+@functools.lru_cache(None)
+def program():
+    return nodus.Program(NODUS)
 
 
-def _number(text):
-    try:
-        return float(text)
-    except ValueError:
-        return text
+def timing(run):
+    """CPU seconds of all ranks by phase, and "linear solver" for its two phases."""
+    found = {phase["name"]: phase["cpu_seconds"] for phase in run.profile["phases"]}
+    found["linear solver"] = found["solver set-up"] + found["solver iterations"]
+    return found
 
 
 def write_case(name, text):
@@ -81,29 +49,17 @@ def write_case(name, text):
 
 
 def run(prm, name, sets=None, pair=None, ranks=1):
-    """Runs a case, with three nested loops unless `sets` has other modes. sets: {"Section/Key": value}; pair: keys of
-    "Contact pair 1". A failed run is a result too."""
-    folder = os.path.join(SCRATCH, name)
+    """A nodus.Run of a case, with three nested loops unless `sets` has other modes. sets: {"Section/Key": value}; pair: keys
+    of "Contact pair 1". A failed run is a result too."""
     keys = {**THREE_LOOPS, **(sets or {})}
     for key, value in (pair or {}).items():
         keys["Contact pair 1/" + key] = value
-    keys["Output/Results folder"] = folder
-    command = [NODUS, prm, "--profile"]
-    if ranks > 1:
-        command = ["mpirun", "-n", str(ranks)] + command
-    for key, value in keys.items():
-        command += ["--set", f"{key}={value}"]
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    os.makedirs(folder, exist_ok=True)
-    with open(os.path.join(folder, "log"), "w") as file:
-        file.write(done.stdout)
-    if "input error" in done.stdout:
-        raise SystemExit(f"{name}: {done.stdout}")
-    print(f"  {name}: exit {done.returncode}, {cpu:.1f} CPU s", flush=True)
-    return Run(folder, done.returncode, done.stdout, cpu, after.ru_maxrss)
+    keys["Output/Results folder"] = os.path.join(SCRATCH, name)
+    done = program().run(prm, ranks, sets=keys, profile=True, check=False)
+    if "input error" in done.log:
+        raise SystemExit(f"{name}: {done.log}")
+    print(f"  {name}: exit {done.code}, {done.cpu:.1f} CPU s", flush=True)
+    return done
 
 
 def fitted_order(h, error):

@@ -20,7 +20,7 @@ namespace Nodus
       text << law << '\n' << std::setprecision(2);
       for (const LawCheck &check : checks)
       {
-        text << "  " << std::left << std::setw(46) << check.what << std::setw(8) << check.error
+        text << "  " << std::left << std::setw(52) << check.what << std::setw(8) << check.error
              << (check.holds() ? "" : " WRONG") << (check.where.empty() ? "no finite answer" : " at " + check.where)
              << '\n';
         hold = hold && check.holds() && !check.where.empty();

@@ -9,7 +9,12 @@
 // gamma. There and back, so that it sticks, slips, comes off the limit, and slips the other way. A cube that is as good
 // as rigid (E = 1e10) on a linear layer has Coulomb's friction mu p e/gamma with s = D.
 //
+// The same cube with a friction law of the test's own, whose state is the way that a site has rubbed: mu follows it
+// from increment to increment.
+//
 // Towards hard contact, force 10 = F: the error F/(1 + k/E) is proportional to the compliance 1/k in the end.
+
+#include <nodus/plugins/friction_law.h>
 
 #include "../cases.h"
 
@@ -26,6 +31,29 @@ namespace
   using Scheme = ContactPairParameters::Scheme;
   using Solver = LinearSolverParameters::Type;
   using Gap    = PressureGapParameters;
+
+  /// Coulomb's law whose coefficient falls with the way that a site has rubbed, its state.
+  class RunningIn : public Nodus::FrictionLaw
+  {
+  public:
+    static double coefficient(const double way)
+    {
+      return 0.2 + 0.4 * std::exp(-way / 0.05);
+    }
+    double limit(const FrictionPoint &point) const override
+    {
+      return coefficient(point.state[0]) * point.pressure;
+    }
+    double limit_by_pressure(const FrictionPoint &point) const override
+    {
+      return coefficient(point.state[0]);
+    }
+    std::array<double, FrictionPoint::max_state> next_state(const FrictionPoint &point,
+                                                            const double         duration) const override
+    {
+      return {{point.state[0] + point.rate * duration, 0., 0., 0.}};
+    }
+  };
 
   struct Way
   {
@@ -185,10 +213,25 @@ namespace
     laws.elastic_slip                = gamma;
     laws.pressure_gap.law            = Gap::Law::linear;
     laws.pressure_gap.stiffness      = 2000.;
+    const auto                layer  = laws;
     const std::vector<double> driven = {0.005, 0.04, 0.0325, -0.02}, expected = {0.005, 0.01, 0.0025, -0.01};
     const auto                stiff = sheared(way, laws, 1e10, 0.005, driven);
     for (unsigned int i = 0; i < 4; ++i)
       check("Coulomb, elastic slip " + std::to_string(expected[i]), -stiff[i], stiffness * expected[i], 1e-6);
+
+    // slides forth by 0.03 in the second increment, and back by 0.02 in the fourth
+    laws                                 = ContactPairParameters();
+    laws.pressure_gap                    = layer.pressure_gap;
+    laws.elastic_slip                    = 1e-4;
+    laws.friction_law                    = ContactPairParameters::FrictionLaw::own;
+    laws.own_friction_law.object         = std::make_shared<RunningIn>();
+    const std::vector<double> way_before = {0., 0.01, 0.04, 0.05};
+    const auto                run_in     = sheared(way, laws, 1e10, 0.005, {0.01, 0.04, 0.03, 0.01});
+    for (unsigned int i = 0; i < 4; ++i)
+      check("own law, way " + std::to_string(way_before[i]),
+            -run_in[i],
+            (i < 2 ? 10. : -10.) * RunningIn::coefficient(way_before[i]),
+            1e-6);
   }
 } // namespace
 

@@ -78,14 +78,14 @@ def unknowns(log):
 
 def radii(surface):
     """Of the half circles with the areas of closed and of sticking nodes."""
-    _, first = np.unique(np.round(surface.reference, 9), axis=0, return_index=True)
+    first = surface.nodes(9)
     area, status = surface.fields["area"][first], surface.fields["CSTATUS"][first]
     return [float(np.sqrt(2 * np.sum(area[status > least]) / np.pi)) for least in (0.5, 1.5)]
 
 
 def jumps(run):
     """Of each new mesh: increment, time, per cent of the log, force and radii before and after: the next increment holds the load."""
-    found, rows, increment = [], {int(row["increment"]): row for row in run.contact()}, 0
+    found, rows, increment = [], {int(row["increment"]): row for row in run.contact}, 0
     for line in run.log.splitlines():
         if match := re.match(r"Increment (\d+),", line):
             increment = int(match.group(1))
@@ -110,14 +110,14 @@ def measure(name, loads, keys):
     for x, *values_here in zip(surface.reference, *(surface.fields[key] for key in FIELDS)):
         if values_here[0] > 0:  # no master, no hanging node
             nodes["%.4f %.4f" % tuple(x[:2])] = [float(v) for v in values_here[:3]] + [float(values_here[3][0])]
-    body = run.body()
+    body = run.bodies()
     top = np.abs(body.reference[:, 2] - case.SIZE) < 1e-6
     found.update(values)
     found.update(
         unknowns=unknowns(run.log), nodes=nodes, r=list(r), q=list(q),
         shift=float(np.mean(body.fields["displacement"][top, 0])),
-        force=[[row["time"], row["slave force x"], row["slave force y"], row["slave force z"]] for row in run.contact()],
-        counts=[int(run.contact()[-1][key]) for key in ("open nodes", "slip nodes", "stick nodes")],
+        force=[[row["time"], row["slave force x"], row["slave force y"], row["slave force z"]] for row in run.contact],
+        counts=[int(run.contact[-1][key]) for key in ("open nodes", "slip nodes", "stick nodes")],
         jumps=jumps(run),
         failed=run.log.count("no equilibrium on the new mesh"))  # fmt: skip
     return found

@@ -75,7 +75,7 @@ def measure(name, fractions, prm, keys):
     folder = re.sub(r"[ ,]+", "_", f"adaptivity/drift {name} " + " ".join(map(str, fractions)))
     run = common.run(prm, folder, {**MERGED, **keys})
     rows = [[row["increment"], row["time"], row["slave force x"], row["slave force y"], row["slave force z"],
-             row["open nodes"], row["slip nodes"], row["stick nodes"]] for row in run.contact()]  # fmt: skip
+             row["open nodes"], row["slip nodes"], row["stick nodes"]] for row in run.contact]  # fmt: skip
     cells = [int(n) for n in re.findall(r"(\d+) unknowns, \d+ slave nodes$", run.log, re.M)]
     jumps = [float(jump) for jump in re.findall(r"the contact force of contact changes by (\S+) %", run.log)]
     return {"name": name, "fractions": fractions, "converged": run.converged, "cpu": run.cpu, "rows": rows, "unknowns": cells,

@@ -194,7 +194,7 @@ def measure(punch, name, keys):
     exact = FORCE / (2 * np.pi * np.sqrt(1 - r[r < INSIDE] ** 2))
     area = area[r < INSIDE]
     error = np.sqrt(np.sum(area * (pressure[r < INSIDE] - exact) ** 2) / np.sum(area * exact**2))
-    force = -4 * run.contact()[-1]["slave force z"]
+    force = -4 * run.contact[-1]["slave force z"]
     found = re.findall(r"-> (\d+) unknowns", run.log) or re.findall(r"(\d+) displacement degrees of freedom", run.log)
     return {"name": name, "punch": punch, "converged": True, "unknowns": int(found[-1]), "cpu": run.cpu, "error": error,
             "force": abs(force / FORCE - 1), "signed": force / FORCE - 1, "largest": pressure.max() / (FORCE / np.pi),

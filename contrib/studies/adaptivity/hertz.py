@@ -16,7 +16,6 @@ import numpy as np
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 import common  # noqa: E402
-import references  # noqa: E402
 
 CASE = os.path.join(common.ROOT, "prm", "adaptive_hertz.prm")
 E_STAR = 1000 / (2 * (1 - 0.3**2))
@@ -51,10 +50,10 @@ def measure(name, keys):
     run = common.run(CASE, "adaptivity/" + name.replace(" ", "_"), {**MERGED, **keys})
     if not run.converged:
         return {"name": name, "converged": False}
-    force = 4 * run.contact()[-1]["slave force z"]
-    a, p0 = references.hertz_sphere(force, 1.0, E_STAR)
+    force = 4 * run.contact[-1]["slave force z"]
+    a, p0 = common.nodus.references.hertz_sphere(force, 1.0, E_STAR)
     r, pressure, area = profile(run)
-    exact = references.elliptic(r, a, p0)
+    exact = common.nodus.references.elliptic(r, a, p0)
     error = np.sqrt(np.sum(area * (pressure - exact) ** 2) / np.sum(area * exact**2))
     unknowns = [int(found) for found in re.findall(r"-> (\d+) unknowns", run.log)]
     unknowns = unknowns or [int(re.search(r"(\d+) displacement degrees of freedom", run.log).group(1))]

@@ -86,7 +86,7 @@ CASES = {
 def measure(name, keys):
     path = common.write_case("adaptivity/ironing", PRM)
     run = common.run(path, "adaptivity/ironing_" + re.sub("[, ]+", "_", name), {**MERGED, **keys})
-    history = [[row["time"], row["slave force x"], row["slave force z"]] for row in run.contact()]
+    history = [[row["time"], row["slave force x"], row["slave force z"]] for row in run.contact]
     unknowns = [int(found) for found in re.findall(r"-> (\d+) unknowns", run.log)]
     unknowns = unknowns or [int(re.search(r"(\d+) displacement degrees of freedom", run.log).group(1))]
     jumps = [float(found) for found in re.findall(r"contact changes by ([-+.e0-9]+) %", run.log)]

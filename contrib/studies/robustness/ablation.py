@@ -30,11 +30,7 @@ FOLDER = os.path.join(common.SCRATCH, "ablation")
 
 def remedies():
     """Names, from the program's own list of allowed values."""
-    text = subprocess.run([common.NODUS, "--explain", "Without"], stdout=subprocess.PIPE, text=True).stdout
-    found = re.search(r"one of: ([^\n]*)", text)
-    if not found:
-        raise SystemExit(f"no names in:\n{text}")
-    return [name.strip(" .") for name in found.group(1).split(",")]
+    return common.program().reference["Strategy/Without"].choices
 
 
 def fixed_cases():

@@ -26,7 +26,7 @@ sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 import geometry  # noqa: E402
 import points  # noqa: E402
 import solids  # noqa: E402
-from common import results  # noqa: E402
+from common import nodus  # noqa: E402
 from states import Case, State  # noqa: E402
 
 # Positions are known to 1e-6 cells in single precision, and so are gaps, normals, prescribed displacements (2.1e-6).
@@ -79,7 +79,7 @@ def vector(row, name):
 
 def check(folder, facts):
     """facts: of random_cases.py. Returns {"violations": [...], "measured": {...}}."""
-    run, case, find = results.Results(folder), Case(facts), Findings()
+    run, case, find = nodus.Results(folder), Case(facts), Findings()
     tables = check_tables(find, run, case)
     before, sums = None, dict.fromkeys(("external", "friction", "contact", "blur"), 0.0)
     times = sorted(run.series("contact"))
@@ -111,12 +111,12 @@ def check(folder, facts):
 def check_tables(find, run, case):
     """Finite numbers in all tables; a row for each pair and condition at each written time. Returns the tables."""
     bad, names = 0, ("contact.csv", "reactions.csv", "energy.csv", "convergence.csv")
-    tables = {name: run.rows(name) for name in names}
-    for row in sum(tables.values(), []):
-        bad += sum(not finite(text) for column, text in row.items() if column not in ("pair", "condition"))
+    tables = {name: run.table(name) for name in names}
+    for table in tables.values():
+        bad += sum(int((~np.isfinite(table[column])).sum()) for column in table.names if column not in ("pair", "condition"))
     find.compare("numbers in tables that are not finite", bad, 0, 0)
     if bad:
-        raise results.ResultsError("; ".join(find.violations()))
+        raise nodus.ResultsError("; ".join(find.violations()))
     written = [t for t in run.series("contact") if t > 0]
     missing = int(run.series("bodies").keys() != run.series("contact").keys())
     asked = {"contact.csv": ("pair", [p["Name"] for p in case.pairs]), "energy.csv": ("time", [None]),
@@ -128,15 +128,8 @@ def check_tables(find, run, case):
             missing += len(found) != 1 if name == "energy.csv" else sorted(found) != sorted(wanted)
     find.compare("rows or states that are missing", missing, 0, 0)
     if missing:
-        raise results.ResultsError("; ".join(find.violations()))
+        raise nodus.ResultsError("; ".join(find.violations()))
     return tables
-
-
-def finite(text):
-    try:
-        return bool(np.isfinite(float(text)))
-    except ValueError:
-        return False
 
 
 def same_time(row, t):

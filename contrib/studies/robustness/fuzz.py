@@ -30,7 +30,7 @@ import time
 
 import fuzz_inputs
 
-SCRATCH = os.environ.get("NODUS_STUDIES", os.path.join(fuzz_inputs.ROOT, "results", "studies"))
+SCRATCH = fuzz_inputs.common.SCRATCH
 INTERNALS = re.compile(r"exception|\bassert|\b\w+\.(?:cc|cpp|h|hpp|c)\b:\d+|std::|dealii::|boost::|bad_alloc|"
                        r"\bterminate|filesystem error|basic_string|vector::|\bstoul?\b|violated condition|<unspecified",
                        re.IGNORECASE)  # fmt: skip

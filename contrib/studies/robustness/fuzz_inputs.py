@@ -4,16 +4,15 @@
 equal shares. Numbers that stand for sizes (refinement, increments, cells) are small or so large that no run could want them.
 """
 
+import functools
 import json
 import os
 import random
 import re
-import subprocess
 
-from random_cases import prm
+from random_cases import common, prm
 
-ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
-NODUS = os.environ.get("NODUS", os.path.join(ROOT, "build-release", "nodus"))
+ROOT, NODUS = common.ROOT, common.NODUS
 KINDS = ("prm", "json", "msh", "checkpoint", "expression", "set")
 
 HOSTILE_NUMBERS = (
@@ -58,22 +57,6 @@ def read(*path):
         return file.read()
 
 
-def parsed(text):
-    """A right parameter file as nested dictionaries."""
-    tree = {}
-    sections = [tree]
-    for line in text.splitlines():
-        line = line.split("#")[0].strip()
-        if line.startswith("subsection"):
-            sections.append(sections[-1].setdefault(line.split(None, 1)[1], {}))
-        elif line == "end":
-            sections.pop()
-        elif line:
-            key, value = line[len("set"):].split("=", 1)  # fmt: skip
-            sections[-1][key.strip()] = value.strip()
-    return tree
-
-
 def put(tree, path, value):
     *sections, key = path.split("/")
     for name in sections:
@@ -85,31 +68,21 @@ BASES = ("two_blocks", "rigid_plane", "driven_plate", "carried_plane", "free_blo
 
 
 def base(name):
-    tree = parsed(read("tests", "parameters", name + ".prm").decode())
+    tree = common.nodus.prm.parse(read("tests", "parameters", name + ".prm").decode())
     if name == "free_block":
         put(tree, "Load stepping/Viscous stabilisation", "1e-2")
     return tree
 
 
 class Reference:
-    """The keys of `nodus --document`, path -> words for what is allowed, and its generators with an example for each."""
-
-    allowed, generators = None, ()
+    """The keys of the program, path -> words for what is allowed, and its generators with an example for each."""
 
     @classmethod
+    @functools.lru_cache(None)
     def keys(cls):
-        if cls.allowed is None:
-            text = subprocess.run([NODUS, "--document"], stdout=subprocess.PIPE, text=True, check=True).stdout
-            text, generators = text.split("\n## Generators")
-            cls.generators = re.findall(r"^\| (\w+) \| .* \| `(.*)` \|$", generators, re.MULTILINE)
-            cls.allowed, section = {}, ""
-            for line in text.splitlines():
-                if line.startswith("## "):
-                    section = line[3:].replace(" / ", "/").replace("`", "").replace("Top level", "")
-                cells = [cell.strip().replace("\\", "") for cell in re.split(r"(?<!\\)\| ?", line)[1:-1]]
-                if len(cells) == 4 and cells[0] not in ("Key", "---"):
-                    cls.allowed[(section + "/" if section else "") + cells[0]] = cells[2]
-        return cls.allowed
+        reference = common.program().reference
+        cls.generators = [(name, entry["example"]) for name, entry in reference.generators.items()]
+        return {path: key.allowed for path, key in reference.keys.items()}
 
 
 def plausible(rng, key, allowed):
@@ -340,7 +313,7 @@ def mesh_case(mesh):
         tree["Contact pair 1"].update({"Slave boundary ids": "1", "Master point": "0, 0, 0", "Master axis": "0, 0, 1",
                                        "Master translation": "0; 0; 0.01*t"})  # fmt: skip
     elif mesh == "inclined.msh":
-        tree = parsed(read("prm", "inclined_interface.prm").decode())
+        tree = common.nodus.prm.parse(read("prm", "inclined_interface.prm").decode())
         for body in ("Body 1", "Body 2"):
             tree[body]["Mesh file"] = "mesh.msh"
     else:
@@ -578,7 +551,7 @@ def checkpoint_input(rng, finished):
             files[path] = rng.choice((b"", cut(rng, files[path] or b"x"), b"garbage\n", None))
             more = f"{os.path.basename(path)} changed"
         elif what == "setting":
-            key, value = random_setting(rng, parsed(files["case.prm"].decode()))
+            key, value = random_setting(rng, common.nodus.prm.parse(files["case.prm"].decode()))
             arguments += ["--set", f"{key}={value}"[:100000]]
             more = f"--set {key}={value[:60]}"
         else:

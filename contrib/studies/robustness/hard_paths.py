@@ -20,7 +20,7 @@ CODE_ASTER = {0.2: 436.995, 0.4: 1696.64, 0.6: 3577.69, 0.8: 3504.28}
 
 
 def cost(run):
-    rows = run.contact() if run.converged else []
+    rows = run.contact if run.converged else []
     cell = f"{sum(r['Newton iterations'] for r in rows):.0f}" if rows else "-"
     return [cell, run.log.count("the increment is halved"), run.log.count(" given up: "), f"{run.cpu:.1f}"]
 
@@ -28,10 +28,10 @@ def cost(run):
 def cantilevers():
     run = common.run(os.path.join(PRM, "cantilevers.prm"), "hard/cantilevers", MERGED, {"Friction coefficient": 0.2})
     print("exit code", run.code, "; Newton iterations, cut-backs, fallbacks, CPU s:", *cost(run))
-    rows = common.results.Results(run.folder).rows("reactions.csv")
+    rows = run.reactions
     body = []
     for t in (0.2, 0.4, 0.6, 0.8, 0.9, 1.0):
-        total = sum(float(r["force y"]) for r in rows if r["condition"].startswith("clamp") and abs(float(r["time"]) - t) < 1e-9)
+        total = sum(r["force y"] for r in rows if r["condition"].startswith("clamp") and abs(r["time"] - t) < 1e-9)
         known = CODE_ASTER.get(t)
         body.append([t, f"{total:.3f}", known or "-", f"{100 * (total / known - 1):+.3f} %" if known else "-"])
     common.table(os.path.join(common.SCRATCH, "cantilevers.md"), ["t", "sum of y reactions", "Code_Aster", "deviation"], body)
@@ -45,8 +45,8 @@ def wedge():
             run = common.run(os.path.join(PRM, "wedge.prm"), f"hard/wedge_{mu}_{name[0]}", loops, {"Friction coefficient": mu})
             value, error = "-", run.log.strip().splitlines()[-1][:160]
             if run.converged:
-                rows = [r for r in common.results.Results(run.folder).rows("reactions.csv") if r["condition"] == "guide"]
-                value = -float(rows[-1]["force z"])
+                rows = run.reactions.where(condition="guide")
+                value = -rows[-1]["force z"]
                 error = f"{100 * (value / exact - 1):+.1e} %"
                 value = f"{value:.3f}"
             body.append([mu, name, f"{exact:.3f}", value, error] + cost(run))
@@ -60,8 +60,8 @@ def rubber_seal():
     for n, friction in ((8, 0.5), (12, 0.3), (12, 0.5), (16, 0.5)):
         run = common.run(seal.write(n, friction, 0.4, 8), f"hard/seal_{n}_{friction}", MERGED)
         counts = collections.Counter()
-        for row in common.results.Results(run.folder).rows("convergence.csv"):
-            counts[row["increment"]] += row["iteration"] != "0"
+        for row in run.convergence:
+            counts[row["increment"]] += row["iteration"] != 0
         why = "yes" if run.converged else run.log.strip().splitlines()[-1][:160]
         body.append([f"{n} x {n}", friction, why, len(counts), max(counts.values()), sum(counts.values())] + cost(run)[1:])
     common.table(os.path.join(common.SCRATCH, "seal.md"),
@@ -82,8 +82,8 @@ def ironing():
         run = common.run(os.path.join(PRM, "ironing.prm"), "hard/ironing_" + name.replace(" ", "_"),
                          {**MERGED, **loops, "Output/VTU interval": 0}, pair)  # fmt: skip
         row = [name, "yes" if run.converged else run.log.strip().splitlines()[-1][:160]]
-        forces = np.array([[float(r["time"]), float(r["force x"]), float(r["force y"])]
-                           for r in common.results.Results(run.folder).rows("reactions.csv") if r["condition"] == "axle"])
+        axle = run.reactions.where(condition="axle")
+        forces = np.column_stack([axle[column] for column in ("time", "force x", "force y")])
         steady = forces[(forces[:, 0] > 1.0999) & (forces[:, 0] < 1.9001)]
         for c in (1, 2):
             f = steady[:, c]

@@ -12,7 +12,6 @@ construction: loads in proportion to the softest body, upper bodies held by pres
 import argparse
 import collections
 import concurrent.futures
-import csv
 import functools
 import json
 import math
@@ -60,15 +59,9 @@ def block(cells, low, high, bottom=None, top=None):
     return grid
 
 
-def prm(tree, indent=""):
+def prm(tree):
     """Nested dictionaries as a parameter file."""
-    text = ""
-    for key, value in tree.items():
-        if isinstance(value, dict):
-            text += f"{indent}subsection {key}\n{prm(value, indent + '  ')}{indent}end\n"
-        else:
-            text += f"{indent}set {key} = {value if isinstance(value, str) else format(value, '.12g')}\n"
-    return text
+    return common.nodus.prm.to_text(tree, written=lambda value: value if isinstance(value, str) else format(value, ".12g"))
 
 
 class RandomCase:
@@ -353,7 +346,7 @@ def run(path, results, time_limit, changes=()):
 def judged(results, code, facts):
     try:
         return checks.check(results, facts)
-    except checks.results.ResultsError as error:
+    except checks.nodus.ResultsError as error:
         return {"violations": [f"unreadable results: {error}"] if code == 0 else [], "measured": {}}
 
 
@@ -387,8 +380,7 @@ def run_case(options, n):
         row["advice"] = try_advice(path, results, options.time_limit, case.facts) if options.advice else []
     row.update(judged(results, code, case.facts))
     if os.path.exists(os.path.join(results, "convergence.csv")):
-        with open(os.path.join(results, "convergence.csv")) as file:
-            row["iterations"] = sum(r["iteration"] != "0" for r in csv.DictReader(file))
+        row["iterations"] = int((common.nodus.Results(results).convergence["iteration"] != 0).sum())
     return row
 
 

@@ -31,36 +31,27 @@ def rounded(n):
     return nodes
 
 
-def section(name, keys, inner=""):
-    lines = "".join(f"  set {key} = {value}\n" for key, value in keys.items())
-    return f"subsection {name}\n{lines}{inner}end\n"
-
-
 def write(n, friction, way, increments):
     """Path of the parameter file: n x n cells in the seal, pressed together by `way` of its 2."""
     name = f"seal_{n}_{friction}"
     cells = [[n if c == "n" else c for c in body[3]] for body in STEEL]
     common.write_mesh(name, [rounded(n)] + [grid(body[1], body[2], c) for body, c in zip(STEEL, cells)])
-    text = f"set Title = rubber seal in a groove, friction {friction}\n"
+    tree = {"Title": f"rubber seal in a groove, friction {friction}"}
     for b, (what, modulus, nu) in enumerate([("seal", 10, 0.499)] + [(body[0], 1000, 0.3) for body in STEEL], 1):
-        keys = {"Name": what, "Mesh file": f"{name}.msh", "Volume ids": b}
-        if b == 1:
-            keys["Volumetric treatment"] = "mean dilatation"
-        law = section("Material", {"Law": "neo-Hookean", "Young's modulus": modulus, "Poisson's ratio": nu})
-        text += section(f"Body {b}", keys, law)
-    c = 0
-    for b, (what, _, _, _, held, _) in enumerate(STEEL, 2):
-        c += 1
-        value = f"0; -{way}*t" if what == "lid" else "0; 0"
-        text += section(f"Boundary condition {c}", {"Name": what, "Body": b, "Boundary ids": 10 * b + held, "Components": "x, y",
-                                                    "Value": value})  # fmt: skip
+        tree[f"Body {b}"] = {"Name": what, "Mesh file": f"{name}.msh", "Volume ids": b,
+                             "Volumetric treatment": "mean dilatation" if b == 1 else "standard",
+                             "Material": {"Law": "neo-Hookean", "Young's modulus": modulus, "Poisson's ratio": nu}}  # fmt: skip
     sides = ", ".join(f"{10 * b + side}" for b in range(1, 6) for side in (4, 5))
-    text += section(f"Boundary condition {c + 1}", {"Name": "plane strain", "Boundary ids": sides, "Components": "z", "Value": 0})
-    text += section(f"Boundary condition {c + 2}", {"Name": "soft spring", "Type": "spring", "Body": 1, "Boundary ids": "10, 11",
-                                                    "Components": "x, y", "Value": 1e-3})  # fmt: skip
+    conditions = [{"Name": what, "Body": b, "Boundary ids": 10 * b + held, "Components": "x, y",
+                   "Value": f"0; -{way}*t" if what == "lid" else "0; 0"}
+                  for b, (what, _, _, _, held, _) in enumerate(STEEL, 2)]  # fmt: skip
+    conditions += [{"Name": "plane strain", "Boundary ids": sides, "Components": "z", "Value": 0},
+                   {"Name": "soft spring", "Type": "spring", "Body": 1, "Boundary ids": "10, 11", "Components": "x, y",
+                    "Value": 1e-3}]  # fmt: skip
+    tree.update({f"Boundary condition {c}": keys for c, keys in enumerate(conditions, 1)})
     for p, (what, _, _, _, _, side) in enumerate(STEEL, 1):
-        text += section(f"Contact pair {p}", {"Name": what, "Slave body": p + 1, "Slave boundary ids": 10 * (p + 1) + side,
-                                              "Master body": 1, "Master boundary ids": "10, 11, 12, 13",
-                                              "Friction coefficient": friction})  # fmt: skip
-    text += section("Load stepping", {"Interval ends": 1, "Increments": increments})
-    return common.write_case(name, text)
+        tree[f"Contact pair {p}"] = {"Name": what, "Slave body": p + 1, "Slave boundary ids": 10 * (p + 1) + side,
+                                     "Master body": 1, "Master boundary ids": "10, 11, 12, 13",
+                                     "Friction coefficient": friction}  # fmt: skip
+    tree["Load stepping"] = {"Interval ends": 1, "Increments": increments}
+    return common.write_case(name, common.nodus.prm.to_text(tree))

@@ -4,7 +4,7 @@ import numpy as np
 
 import gaps
 import geometry
-from common import results
+from common import nodus
 
 FIELDS = ("CPRESS", "COPEN", "CSTATUS", "paired", "area", "normal", "friction_traction", "CSHEAR1", "CSHEAR2", "CSLIP1", "CSLIP2")
 
@@ -33,13 +33,13 @@ class Case:
         middle = bodies.X[own[:, [0, 0, -1, -1], [0, -1, 0, -1]]].mean(axis=1)
         distance = np.linalg.norm(self.sides[side][:, None] - middle[None], axis=2)
         if not distance.min(axis=1).max() < 1e-5 * self.facts["size"]:
-            raise results.ResultsError(f"faces of boundary {side} are not in bodies.vtu")
+            raise nodus.ResultsError(f"faces of boundary {side} are not in bodies.vtu")
         return own[np.unique(distance.argmin(axis=1))]
 
     @staticmethod
     def value(condition, t):
         """The three components that a condition prescribes at time t."""
-        return np.array([float(results.evaluate(text, {"t": t})) for text in condition["Value"].split(";")])
+        return np.array([float(nodus.evaluate(text, {"t": t})) for text in condition["Value"].split(";")])
 
 
 class State:

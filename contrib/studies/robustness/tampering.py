@@ -21,7 +21,7 @@ import numpy as np
 import checks
 import common
 import random_cases
-from common import results
+from common import nodus
 from states import Case, State
 
 
@@ -31,7 +31,7 @@ def change_field(path, name, change):
     piece = tree.getroot().find("UnstructuredGrid/Piece")
     arrays = [piece.find("Points/DataArray")] if name == "points" else [a for a in piece.find("PointData") if a.get("Name") == name]
     array = arrays[0]
-    values = results._decode(array).astype(float)
+    values = nodus.mesh.decode(array).astype(float)
     width = 3 if name == "points" else int(array.get("NumberOfComponents", 1))
     values = change(values.reshape(-1, width) if width > 1 else values)
     raw = np.ascontiguousarray(values, np.float32).tobytes()
@@ -63,7 +63,7 @@ class Tamper:
 
     def field(self, name, change, where=None):
         """change(values, points of the pair) of contact.vtu at the node of the largest pressure, or `where`."""
-        mesh = results.read_mesh(self.contact)
+        mesh = nodus.read_mesh(self.contact)
         on = np.round(mesh.fields["pair"]) == self.number
         if where != "everywhere":
             on &= np.linalg.norm(mesh.points - self.x, axis=1) < 1e-3 * self.pair.cell
@@ -87,7 +87,7 @@ class Tamper:
     def move(self, body, by, near=None, fields=("points", "displacement")):
         """Points of a body, or those near a place, in both files of the last state."""
         for path, label in ((self.bodies, "body"), (self.contact, "pair")):
-            mesh = results.read_mesh(path)
+            mesh = nodus.read_mesh(path)
             of = np.round(mesh.fields[label])
             if label == "pair":
                 of = np.array([0] + [int(p["Slave body"]) for p in self.facts["pairs"]])[of.astype(int)]
@@ -215,7 +215,7 @@ class Tamper:
         self.table("energy.csv", "imbalance", lambda text: repr(float(text) + 0.01 / 1.01 * self.energy("external work")))
 
     def energy(self, column):
-        return float(results.Results(self.folder).rows("energy.csv")[-1][column])
+        return nodus.Results(self.folder).energy[-1][column]
 
     def stored_energy(self):
         self.table("energy.csv", "stored energy", lambda text: repr(1.01 * float(text)))
@@ -272,17 +272,17 @@ def main():
         row = random_cases.run_case(options, n)
         case = random_cases.RandomCase(options.seed, n)
         folder = case.write("random_cases")[: -len(".prm")]
-        run = results.Results(folder)
+        run = nodus.Results(folder)
         times = sorted(run.series("contact"))
         state = State(run, Case(case.facts), times[-1])
-        last = {name: [r for r in run.rows(name) if checks.same_time(r, times[-1])] for name in ("reactions.csv", "contact.csv")}
+        last = {name: [r for r in run.table(name) if checks.same_time(r, times[-1])] for name in ("reactions.csv", "contact.csv")}
         state.row_of = {r["condition"]: checks.vector(r, "force") for r in last["reactions.csv"]}
         if row["exit"] != 0 or row["violations"] or max(pair.scale for pair in state.pairs) == 0:
             print(f"case {n} is left out:", row.get("reason", ""), *row["violations"])
             continue
         for pair, of in zip(state.pairs, last["contact.csv"]):
             pair.master_force = checks.vector(of, "master force")
-        energies = {name: abs(float(value)) for name, value in run.rows("energy.csv")[-1].items() if name not in ("increment", "time")}
+        energies = {name: abs(value) for name, value in run.energy[-1].items() if name not in ("increment", "time")}
         dissipated = energies["frictional dissipation"] / max(energies.values())
         left_out = left_out_of(max(state.pairs, key=lambda pair: pair.scale), case.facts, dissipated)
         for kind in kinds:
@@ -294,7 +294,7 @@ def main():
             getattr(Tamper(copy, case.facts, state, {name: run.series(name)[times[-1]] for name in ("contact", "bodies")}), kind)()
             try:
                 found = checks.check(copy, case.facts)["violations"]
-            except results.ResultsError as error:
+            except nodus.ResultsError as error:
                 found = [str(error)]
             seen[kind].append((n, [text.split(":")[0] for text in found]))
             shutil.rmtree(copy)

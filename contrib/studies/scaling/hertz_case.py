@@ -239,16 +239,15 @@ def nodus(n, name, solver="condensed", friction=0.0, ranks=1, sets=None, preload
     result = measured(command, os.path.join(folder, "log"), environment=variables)
     result["folder"] = folder
     if result["exit"] == 0:
-        with open(os.path.join(folder, "profile.json")) as file:
-            result["profile"] = json.load(file)
-        result["contact"] = common.Run(folder, 0, "", 0, 0).contact()[-1]
+        found = common.nodus.Results(folder)
+        result["profile"], result["contact"] = found.profile, found.contact[-1]
     print(f"  {name}: exit {result['exit']}, {result['cpu']:.1f} CPU s, {result['peak MiB']:.0f} MiB", flush=True)
     return result
 
 
 def pressures(mesh, folder):
     """CPRESS at the slave nodes of a run of nodus."""
-    surface = common.results.Results(folder).mesh("contact")
+    surface = common.nodus.Results(folder).surface()
     numbers = mesh.numbers_at(surface.reference, np.ones(len(surface.points), bool))
     result = np.zeros(len(mesh.nodes))
     result[numbers] = surface.field("CPRESS")

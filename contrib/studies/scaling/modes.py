@@ -64,7 +64,7 @@ def measure(case, mode):
     prm = os.path.join(common.ROOT, "prm", name + ".prm")
     run = common.run(prm, f"modes_{case}_{mode}".replace(", ", "_").replace(" ", "_"), sets)
     # one row per increment and pair; the counts are those of the increment
-    rows = {row["increment"]: row for row in run.contact()}.values() if run.converged else []
+    rows = {row["increment"]: row for row in run.contact}.values() if run.converged else []
     return run, list(rows)
 
 
@@ -82,7 +82,7 @@ def rows_of(case):
             reference = forces
         scale = np.abs(reference).max(axis=0)
         scale[:3] = scale[:3].max()
-        timing = run.timing()
+        timing = common.timing(run)
         table.append([
             case,
             mode,

@@ -26,7 +26,7 @@ COUNTS = ["messages", "messages bytes", "reductions", "gathers", "gathers bytes"
 
 def nodal(mesh, folder):
     """Displacements of all nodes and pressures at the slave nodes, whatever rank wrote them."""
-    body = common.results.Results(folder).mesh("bodies")
+    body = common.nodus.Results(folder).bodies()
     cells = body.cells.reshape(len(body.cells), -1)
     upper = np.zeros(len(body.points), bool)
     upper[cells] = (body.reference[cells, 2].mean(axis=1) > 0)[:, None]

@@ -74,7 +74,7 @@ def rows_of(case):
         if not run.converged:
             table.append([case, solver, "stops", "", "", "", f"{run.cpu:.1f}"])
             continue
-        rows = run.contact()
+        rows = run.contact
         counts = {row["increment"]: row for row in rows}.values()
         reference = reference or rows
         table.append([

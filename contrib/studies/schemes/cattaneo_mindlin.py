@@ -128,7 +128,7 @@ def exact(force, tangential, poisson):
 
 def measure(run, poisson):
     """Numbers of the table, and r, shear traction of the slave nodes."""
-    last = run.contact()[-1]
+    last = run.contact[-1]
     force, tangential = 2 * abs(last["slave force z"]), 2 * abs(last["slave force x"])
     a, c, p0, pressure, shear = exact(force, tangential, poisson)
     surface = run.surface()
@@ -165,7 +165,7 @@ def measure(run, poisson):
         "stick": stick,
         "shear": error_shear,
         "pressure": error_pressure,
-        "Newton": sum(row["Newton iterations"] for row in run.contact()),
+        "Newton": sum(row["Newton iterations"] for row in run.contact),
     }, profile
 
 

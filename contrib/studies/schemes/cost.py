@@ -32,7 +32,7 @@ def measure(n, repetitions):
             run = common.run(prm, "cost", pair=keys)
             if not run.converged:
                 continue
-            contact, timing = run.contact()[-1], run.timing()
+            contact, timing = run.contact[-1], common.timing(run)
             found = best.setdefault(scheme, {
                 "newton": int(contact["Newton iterations"]),
                 "krylov": int(contact["Krylov iterations"]),

@@ -123,8 +123,8 @@ def evaluate(run):
     """Errors against Hertz with the computed force."""
     if not run.converged:
         return None
-    contact, surface = run.contact()[-1], run.surface()
-    _, first = np.unique(np.round(surface.reference, 5), axis=0, return_index=True)
+    contact, surface = run.contact[-1], run.surface()
+    first = surface.nodes(5)
     area, p = surface.field("area")[first], surface.field("CPRESS")[first]
     r = np.hypot(*surface.reference[first, :2].T)
     force = 4 * abs(contact["slave force z"])

@@ -289,7 +289,7 @@ GAUSS, WEIGHTS = 0.5 * (GAUSS + 1), 0.5 * WEIGHTS
 
 def errors(solution, run):
     """L2 errors of u over the cube and of the multiplier over its contact face."""
-    body = run.body()
+    body = run.bodies()
     cells = body.cells[np.min(body.reference[:, 2][body.cells], axis=(1, 2, 3)) > -0.01]
     n = cells.shape[1]
     value, slope = shape(n, GAUSS)

@@ -41,7 +41,7 @@ def errors(degree, pair, slave, scheme):
         run = common.run(PRM, "patch", sets, {**common.SCHEMES[scheme], "Normal": "averaged"})
     if not run.converged:
         return None
-    body = run.body()
+    body = run.bodies()
     top = body.field("displacement z")[body.reference[:, 2] > 2 - 1e-4]  # the files hold single precision
     pressure = run.surface().field("CPRESS")
     return np.max(np.abs(pressure / PRESSURE - 1)), np.max(np.abs(top / TOP - 1)), again

@@ -88,8 +88,8 @@ def evaluate(run, load):
     """Open sites, all sites, relative L2 error of CPRESS, largest relative error."""
     if not run.converged:
         return None
-    contact, surface = run.contact()[-1], run.surface()
-    _, first = np.unique(np.round(surface.reference, 5), axis=0, return_index=True)
+    contact, surface = run.contact[-1], run.surface()
+    first = surface.nodes(5)
     area, error = surface.field("area")[first], surface.field("CPRESS")[first] / (load * EXACT) - 1
     n_open = int(contact["open nodes"])
     return n_open, n_open + int(contact["slip nodes"]), np.sqrt(area @ error**2 / area.sum()), np.max(np.abs(error))

@@ -85,7 +85,7 @@ SHAFTS = (16, 24, 48)
 
 def ripple(run):
     """Largest deviation of the torque from its mean over a facet period, relative; and that mean."""
-    torque = np.array([row["slave moment z"] for row in run.contact()])[1:]
+    torque = np.array([row["slave moment z"] for row in run.contact])[1:]
     slides = torque[STEPS:]  # the first period brings the ring from stick to slip
     if len(slides) < STEPS:
         return float("nan"), float("nan")
@@ -128,7 +128,7 @@ def main():
                 pair=dict(common.SCHEMES[scheme], Surface=surface, Normal=normal),
             )
             value, torque = ripple(run)
-            last = run.contact()[-1]
+            last = run.contact[-1]
             rows.append(
                 [
                     shaft,
@@ -138,12 +138,12 @@ def main():
                     "all" if run.converged else f"stopped at increment {int(last['increment'])}",
                     f"{100 * value:.3f} %",
                     f"{torque:.1f}",
-                    f"{sum(row['Newton iterations'] for row in run.contact()):.0f}",
+                    f"{sum(row['Newton iterations'] for row in run.contact):.0f}",
                 ]
             )
             print(rows[-1], flush=True)
             if normal != "slave":
-                curves[(shaft, scheme, surface, normal)] = [row["slave moment z"] for row in run.contact()]
+                curves[(shaft, scheme, surface, normal)] = [row["slave moment z"] for row in run.contact]
     figure, axes = common.figure()
     for (shaft, scheme, surface, normal), torque in curves.items():
         if shaft == SHAFTS[1] and scheme != "integration point":

@@ -48,7 +48,7 @@ def main():
         for kind, pair in KINDS.items():
             name = f"unsticking_{case}_{kind}".replace(" ", "_").replace(",", "")
             run = common.run(os.path.join(PRM, prm), name, dict(sets), pair)
-            table = run.contact() if os.path.exists(os.path.join(run.folder, "contact.csv")) else []
+            table = run.contact if os.path.exists(os.path.join(run.folder, "contact.csv")) else []
             total = {
                 key: sum(row[key] for row in table)
                 for key in ("threshold passes", "status passes", "Newton iterations", "status changes")

@@ -152,8 +152,7 @@ def run_nodus(name, path, volumes, surfaces, degree, treatment):
     prm = common.write_case(f"tetrahedra/{name}.prm", PRM.format(bodies=bodies, degree=degree, shift=SHIFT, press=PRESS,
                                                                 friction=FRICTION, **surfaces))
     run = common.run(prm, f"tetrahedra/runs/{name}", meshes.MERGED)
-    table = common.results.Results(run.folder)
-    forces = [np.array([table.table("reactions.csv", "condition", "top", f"force {d}", t) for d in "xyz"]) for t in (1, 2)]
+    forces = [np.array([run.reactions.value(f"force {d}", t, condition="top") for d in "xyz"]) for t in (1, 2)]
     return meshes.unknowns(run.log), *forces
 
 

@@ -78,7 +78,7 @@ def measure(name, mesh, degree, treatment, nu):
     run = common.run(prm, f"tetrahedra/runs/{name}", meshes.MERGED)
     if not run.converged:
         return meshes.unknowns(run.log), float("nan"), run.cpu
-    body = run.body()
+    body = run.bodies()
     at_end = np.abs(body.reference[:, 0] - L) < 1e-6
     return meshes.unknowns(run.log), body.field("displacement z")[at_end].mean() / deflection - 1, run.cpu
 

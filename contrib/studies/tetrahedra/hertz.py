@@ -14,7 +14,6 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 import meshes  # noqa: E402
 from meshes import common  # noqa: E402
-import references  # noqa: E402
 
 CASE = os.path.join(common.ROOT, "prm", "hertz.prm")
 R, APPROACH, E_STAR = 8.0, 0.004, 2000 / (2 * (1 - 0.3**2))
@@ -56,13 +55,13 @@ def measure(name, keys):
     run = common.run(CASE, "tetrahedra/runs/hertz_" + name.replace(" ", "_"), {**meshes.MERGED, **keys})
     if not run.converged:
         return [meshes.unknowns(run.log), "no solution", "", "", "", f"{run.cpu:.0f}"]
-    contact = run.contact()[-1]
+    contact = run.contact[-1]
     force = contact["slave force z"]
-    a, p0 = references.hertz_sphere(4 * force, R, E_STAR)
+    a, p0 = common.nodus.references.hertz_sphere(4 * force, R, E_STAR)
     surface = run.surface()
     r = np.hypot(surface.reference[:, 0], surface.reference[:, 1])
     pressure, area = surface.field("CPRESS").ravel(), surface.field("area").ravel()
-    exact = references.elliptic(r, a, p0)
+    exact = common.nodus.references.elliptic(r, a, p0)
     error = np.sqrt(np.sum(area * (pressure - exact) ** 2) / np.sum(area * exact**2))
     return [meshes.unknowns(run.log), int((pressure > 0).sum()), f"{100 * (abs(force) / FORCE - 1):+.2f} %",
             f"{100 * (pressure.max() / P0 - 1):+.2f} %", f"{100 * error:.2f} %", f"{run.cpu:.0f}"]

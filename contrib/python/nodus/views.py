@@ -1,9 +1,10 @@
-"""Where pictures of results look from and what they frame; shared by plot and figure."""
+"""Where pictures of results look from and what they frame; shared by figures and the overview."""
 
-import matplotlib
+import matplotlib.cm
+import matplotlib.colors
 import numpy as np
 
-from render import axes_facing, render, view_axes
+from .render import axes_facing, render, view_axes
 
 PANEL_PIXELS = 900
 
