@@ -88,12 +88,13 @@ namespace Nodus
       return mistake;
     }
 
-    /// What is wrong with the library, a sentence about it.
+    /// @returns what is wrong with the library, a sentence about it. @throws InputError with such a sentence where it
+    /// has not been loaded at all
     std::string load_once(const std::string &file, const std::vector<std::string> &taken)
     {
       std::error_code unknown;
       if (!std::filesystem::is_regular_file(file, unknown))
-        return "is no file; give the path of a shared library (in a .prm file relative to its folder)";
+        throw InputError("is no file; give the path of a shared library (in a .prm file relative to its folder)");
       if (dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD))
         return ""; // linked to the program: it has registered already
       // It stays: objects of its classes may live as long as the process.
@@ -105,11 +106,11 @@ namespace Nodus
           text.erase(0, file.size() + 2);
         registry().arriving.clear();
         registry().mistake.clear();
-        return "cannot be loaded: " + text +
-               (text.find("undefined symbol") != std::string::npos
-                    ? "; build it with the headers of this version of nodus (" NODUS_BUILT_FOR
-                      "), and link it to the libraries that it uses"
-                    : "; give a shared library, built for this machine");
+        throw InputError("cannot be loaded: " + text +
+                         (text.find("undefined symbol") != std::string::npos
+                              ? "; build it with the headers of this version of nodus (" NODUS_BUILT_FOR
+                                "), and link it to the libraries that it uses"
+                              : "; give a shared library, built for this machine"));
       }
       if (registry().arriving.empty() && registry().mistake.empty())
         return "registers nothing; it needs a line such as NODUS_REGISTER_MATERIAL(...), or is no plug-in of nodus";
@@ -140,10 +141,17 @@ namespace Nodus
     registered(""); // what the program has registered by itself is no part of the library
     std::error_code   unknown;
     const std::string path = std::filesystem::weakly_canonical(file, unknown).string();
-    if (r.libraries.count(path) == 0)
-      r.libraries[path] = load_once(path, taken);
-    if (!r.libraries[path].empty())
-      throw InputError(file + ' ' + r.libraries[path]);
+    try
+    {
+      if (r.libraries.count(path) == 0)
+        r.libraries.emplace(path, load_once(path, taken));
+      if (!r.libraries[path].empty())
+        throw InputError(r.libraries[path]);
+    }
+    catch (const InputError &error)
+    {
+      throw InputError(file + ' ' + error.what());
+    }
   }
 
   std::vector<Plugins::Entry> Plugins::registered(const std::string &kind)
