@@ -110,7 +110,12 @@ namespace Nodus
       couplings.add_gap(
           site, variation.columns(), compliance * state.lambda[site] * variation.rows().row(variation.area()));
     if (jump_.middle(site) != jump_.end(site))
-      variation.balance(jump_, site, averages(site), pairing_[site], geometry_.slave[surfaces_.pair(site)].positions());
+    {
+      const unsigned int p      = surfaces_.pair(site);
+      const auto         shares = MomentBalance::shares(pairs_[p], geometry_.rigid[p] != nullptr);
+      variation.balance(
+          jump_, surfaces_, site, shares, geometry_.master[p], pairing_[site], geometry_.slave[p].positions());
+    }
     couple(site, state, residual, law(site, state, residual, follows), variation, couplings);
   }
 

@@ -81,12 +81,22 @@ namespace Nodus
         surfaces.expand(node, 1., add_free);
         offset += weight * surfaces.nodes()[node].offset;
       }
-      /// Adds nodes that share evenly in what balances moments.
-      template <typename Nodes, typename Weights>
-      void add_master(const Nodes &nodes, const Weights &weights)
+      /// Those that carry a rigid master share evenly in what balances moments.
+      void add_carriers(const RigidCarrier &carrier, const Point &x)
       {
-        for (unsigned int n = 0; n < nodes.size(); ++n)
-          add(master, nodes[n], -weights[n], 1. / nodes.size());
+        const RigidCarrier::Weights weights = carrier.weights(x);
+        for (unsigned int n = 0; n < weights.size(); ++n)
+          add(master, carrier.nodes()[n], -weights[n], 1. / weights.size());
+      }
+      /// The nodes around those of a meshed master share in what balances moments.
+      void share_around(const SurfaceGeometry &geometry, const Vector3 &normal)
+      {
+        const unsigned int n = master.size();
+        for (unsigned int i = 0; i < n; ++i)
+          geometry.for_nodes_around(master[i].node,
+                                    -normal,
+                                    [&, share = std::abs(master[i].weight)](const unsigned int node, const double part)
+                                    { add(master, node, 0., share * part); });
       }
     };
 
@@ -94,7 +104,8 @@ namespace Nodus
     /// are not flat, put the mean master point beside the normal through the slave node, and forces along that would
     /// turn the bodies; so do smoothed facets and overhang in the other schemes. The master weights are changed by the
     /// least amount, relative to the shares of the nodes, that puts it on the normal (eq. J4); the distance along it
-    /// stays. Shares of averages are their weights: a node whose weight grows from zero comes in without a jump.
+    /// stays. A node comes in without a jump: shares grow with the weights of the nodes, or of those around
+    /// them (eq. J6).
     /// Friction acts with that distance as its lever: its moment is taken up by forces along the normal, and what the
     /// master turns counts as slip at the slave (eq. J5).
     void balance_moment(
@@ -148,12 +159,12 @@ namespace Nodus
     }
 
     /// Of a slave node with averages over its faces.
-    void make_averaged(const AveragedJump::Row &averages, Row &row)
+    void make_averaged(const AveragedJump::Row &averages, const Shares shares, Row &row)
     {
       for (const AveragedJump::Entry &e : averages.slave)
         row.slave.push_back({e.node, e.weight, {}, 0., 0.});
       for (const AveragedJump::Entry &e : averages.master)
-        row.master.push_back({e.node, e.weight, {}, 0., std::abs(e.weight)});
+        row.master.push_back({e.node, e.weight, {}, 0., shares == Shares::weighted ? std::abs(e.weight) : 0.});
       row.offset = averages.offset - averages.rigid.x;
       row.size   = std::sqrt(averages.whole);
     }
@@ -185,10 +196,13 @@ namespace Nodus
       else
         row.slave.push_back({surfaces.slave_nodes()[s].node, 1., {}, 0., 0.});
       if (rigid != nullptr && rigid->carrier() != nullptr)
-        row.add_master(rigid->carrier()->nodes(), rigid->carrier()->weights(on_rigid));
+        row.add_carriers(*rigid->carrier(), on_rigid);
       if (master.found())
-        row.add_master(geometry.master[p].face(master.face).nodes,
-                       FaceShape(surfaces.degree(), master.xi, master.eta).value);
+      {
+        const FaceShape shape(surfaces.degree(), master.xi, master.eta);
+        for (unsigned int n = 0; n < shape.n; ++n)
+          row.add(row.master, geometry.master[p].face(master.face).nodes[n], -shape.value[n]);
+      }
     }
   } // namespace
 
@@ -213,11 +227,14 @@ namespace Nodus
     {
       const unsigned int p      = surfaces.pair(s);
       const bool         paired = pairing[s].found || pairing[s].held;
+      const Shares       shares = MomentBalance::shares(pairs[p], geometry.rigid[p] != nullptr);
       row.clear();
       if (paired && pairs[p].scheme == ContactPairParameters::Scheme::averaged)
-        make_averaged(averaged.row(s), row);
+        make_averaged(averaged.row(s), shares, row);
       else if (paired && (pairing[s].master.found() || geometry.rigid[p] != nullptr))
         make_pointwise(s, geometry, pairing[s].master, row);
+      if (!row.master.empty() && shares == Shares::around)
+        row.share_around(geometry.master[p], pairing[s].normal);
       if (!row.master.empty())
         balance_moment(pairing[s], status.adjustment(s), status.has_friction(p), geometry.slave[p].positions(), row);
       if (const RigidSurface *const rigid = geometry.rigid[p]; rigid != nullptr && !row.slave.empty())

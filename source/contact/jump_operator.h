@@ -24,6 +24,22 @@ namespace Nodus
     std::pair<double, double> inverse_of_spread(double spread, double size);
     /// Unit vectors across the normal of a site and each other. The first tangents that carry friction are these.
     std::array<Vector3, 2> basis(const SitePairing &site);
+    /// How master nodes share in what balances moments: as they are weighted (averages over overlaps and over rigid
+    /// masters), evenly (what carries a rigid master), or as the nodes around them are weighted: rows may be on an edge
+    /// alone, and a closest point passes from face to face.
+    enum class Shares
+    {
+      weighted,
+      even,
+      around
+    };
+    inline Shares shares(const ContactPairParameters &pair, const bool rigid)
+    {
+      if (pair.scheme == ContactPairParameters::Scheme::averaged &&
+          (rigid || pair.integration == ContactPairParameters::Integration::segment))
+        return Shares::weighted;
+      return rigid ? Shares::even : Shares::around;
+    }
   } // namespace MomentBalance
 
   /// G: the jump of each contact site as a combination of nodal values, slave minus master (eq. 18, 22).

@@ -150,4 +150,35 @@ namespace Nodus
     }
     return input;
   }
+
+  Vector3 prescribed_motion(const ContactSurfaces      &surfaces,
+                            const Pairing              &pairing,
+                            const JumpOperator         &jump,
+                            const std::vector<Vector3> &increment,
+                            const unsigned int          site)
+  {
+    const auto &[face, xi, eta] = pairing[site].master;
+    if (!pairing[site].master.found())
+      return jump.jump_of_increment(site, increment);
+    const auto mean = [&](const std::vector<unsigned int> &nodes, const FaceShape &shape)
+    {
+      Vector3 result, sum;
+      for (unsigned int n = 0; n < shape.n; ++n)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (surfaces.fixed(nodes[n], c))
+          {
+            result[c] += shape.value[n] * increment[nodes[n]][c];
+            sum[c] += shape.value[n];
+          }
+      for (unsigned int c = 0; c < dim; ++c)
+        result[c] /= sum[c] != 0. ? sum[c] : 1.;
+      return result;
+    };
+    const unsigned int p      = surfaces.pair(site);
+    const Vector3      master = mean(surfaces.master_faces(p)[face].nodes, FaceShape(surfaces.degree(), xi, eta));
+    if (!surfaces.is_point(site))
+      return increment[surfaces.slave_nodes()[site].node] - master;
+    const SlavePoint &at = surfaces.point(site);
+    return mean(surfaces.slave_faces(p)[at.face].nodes, FaceShape(surfaces.degree(), at.xi, at.eta)) - master;
+  }
 } // namespace Nodus

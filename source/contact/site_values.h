@@ -40,6 +40,15 @@ namespace Nodus
                            const Status                             &status,
                            const ContactAssembler                   &assembler,
                            const ContactState                       &state);
+
+  /// How far prescribed displacements move a site along its closest master point in the increment [length]: the motion
+  /// of the nodes that are prescribed there. Averages reach nodes beside that point, too, which move as the body does;
+  /// on a plane of symmetry that is no slip. Where no master has faces, the jump of the increment.
+  Vector3 prescribed_motion(const ContactSurfaces      &surfaces,
+                            const Pairing              &pairing,
+                            const JumpOperator         &jump,
+                            const std::vector<Vector3> &increment,
+                            unsigned int                site);
 } // namespace Nodus
 
 #endif

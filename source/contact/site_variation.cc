@@ -120,15 +120,14 @@ namespace Nodus
   {
     struct Entry
     {
-      unsigned int    node;       ///< of the row
-      double          size, sign; ///< the share, and how it follows the weight
-      Vector3         arm;        ///< from the mean
+      unsigned int    node; ///< of the row
+      double          size; ///< the share
+      Vector3         arm;  ///< from the mean
       Eigen::Vector2d d;
     };
     Moments(const SiteVariation      &variation,
             const JumpOperator       &jump,
             const unsigned int        site,
-            const bool                averaged,
             const Basis              &b,
             const std::vector<Point> &x)
     {
@@ -137,13 +136,7 @@ namespace Nodus
         beside += e->unbalanced * x[e->node];
       for (const JumpOperator::Entry *e = jump.middle(site); e != jump.end(site); ++e)
       {
-        entries.push_back({variation.place_of_node_[e->node],
-                           e->share,
-                           !averaged            ? 0.
-                           : e->unbalanced > 0. ? 1.
-                                                : -1.,
-                           Vector3(x[e->node]),
-                           Eigen::Vector2d::Zero()});
+        entries.push_back({variation.place_of_node_[e->node], e->share, Vector3(x[e->node]), Eigen::Vector2d::Zero()});
         mean += e->share * x[e->node];
         sum += e->share;
       }
@@ -212,6 +205,34 @@ namespace Nodus
     };
   } // namespace
 
+  void SiteVariation::vary_shares(const JumpOperator         &jump,
+                                  const ContactSurfaces      &surfaces,
+                                  const unsigned int          site,
+                                  const MomentBalance::Shares shares,
+                                  const SurfaceGeometry      &master,
+                                  const Vector3              &normal)
+  {
+    shares_.setZero(nodes_.size(), rows_.cols());
+    for (const JumpOperator::Entry *e = jump.middle(site); e != jump.end(site) && shares != MomentBalance::Shares::even;
+         ++e)
+    {
+      const auto   row  = rows_.row(place_of_node_[e->node]);
+      const double sign = e->unbalanced > 0. ? 1. : -1.;
+      if (shares == MomentBalance::Shares::weighted)
+        shares_.row(place_of_node_[e->node]) = sign * row;
+      else if (!row.isZero(0.))
+        master.for_nodes_around(e->node,
+                                -normal,
+                                [&](const unsigned int node, const double part)
+                                {
+                                  surfaces.expand(node,
+                                                  sign * part,
+                                                  [&](const unsigned int free_node, const double factor)
+                                                  { shares_.row(place_of_node_[free_node]) += factor * row; });
+                                });
+    }
+  }
+
   void SiteVariation::vary_moments(const Basis              &b,
                                    const Eigen::Matrix3d    *d_b,
                                    const Moments            &moments,
@@ -234,17 +255,17 @@ namespace Nodus
     for (const Moments::Entry &e : moments.entries)
     {
       const unsigned int column = 3 * place_of_source_[nodes_[e.node]];
-      const auto         row_e  = rows_.row(e.node);
+      const auto         share  = shares_.row(e.node);
       for (unsigned int k = 0; k < 3; ++k)
       {
         const unsigned int i = k == 1 ? 1 : 0, j = k == 0 ? 0 : 1;
-        slopes_.row(to_spread + k) += e.sign * e.d[i] * e.d[j] * row_e;
+        slopes_.row(to_spread + k) += e.d[i] * e.d[j] * share;
         slopes_.block<1, 3>(to_spread + k, column) += e.size * (e.d[i] * eigen(b[j]) + e.d[j] * eigen(b[i]));
         turned[k] += e.size * eigen(e.arm) * (e.d[i] * d_b[j] + e.d[j] * d_b[i]);
       }
       for (unsigned int i = 0; i < 2; ++i)
       {
-        slopes_.row(to_mean + i) += e.sign * e.d[i] / moments.sum * row_e;
+        slopes_.row(to_mean + i) += e.d[i] / moments.sum * share;
         slopes_.block<1, 3>(to_mean + i, column) += e.size / moments.sum * eigen(b[i]);
       }
     }
@@ -272,22 +293,24 @@ namespace Nodus
         for (unsigned int k = 0; k < 3; ++k)
           d_h += slope.by_spread(k, e.d)[i] * slopes_.row(to_spread + k);
         d_h.middleCols<3>(3 * place_of_source_[nodes_[e.node]]) += row[0] * eigen(b[0]) + row[1] * eigen(b[1]);
-        turn += eigen(b[i]).transpose() * (e.sign * h[i] * rows_.row(e.node) + e.size * d_h);
+        turn += eigen(b[i]).transpose() * (h[i] * shares_.row(e.node) + e.size * d_h);
         turn += e.size * h[i] * d_b[i] * normals;
       }
     }
   }
 
-  void SiteVariation::balance(const JumpOperator       &jump,
-                              const unsigned int        number,
-                              const bool                averaged,
-                              const SitePairing        &site,
-                              const std::vector<Point> &x)
+  void SiteVariation::balance(const JumpOperator         &jump,
+                              const ContactSurfaces      &surfaces,
+                              const unsigned int          number,
+                              const MomentBalance::Shares shares,
+                              const SurfaceGeometry      &master,
+                              const SitePairing          &site,
+                              const std::vector<Point>   &x)
   {
     for (const JumpOperator::Entry *e = jump.begin(number); e != jump.end(number); ++e)
       weight_[place_of_node_[e->node]] = e->unbalanced;
     const Basis           b = MomentBalance::basis(site);
-    const Moments         moments(*this, jump, number, averaged, b, x);
+    const Moments         moments(*this, jump, number, b, x);
     const Eigen::Vector2d beside(moments.beside * b[0], moments.beside * b[1]);
     const Slope           slope(moments.spread, jump.size(number), beside);
     // of the basis with respect to the normal; a turn about that changes nothing
@@ -295,6 +318,7 @@ namespace Nodus
                                      -eigen(site.normal).transpose() * eigen(b[1])};
     const auto            normals = rows_.middleRows<3>(normal());
 
+    vary_shares(jump, surfaces, number, shares, master, site.normal);
     vary_moments(b, d_b, moments, x);
 
     if (jump.lever(number) != 0.)
@@ -313,7 +337,7 @@ namespace Nodus
     for (const Moments::Entry &e : moments.entries)
     {
       auto row_e = rows_.row(e.node);
-      row_e *= 1. - e.sign * e.d.dot(slope.slope);
+      row_e -= e.d.dot(slope.slope) * shares_.row(e.node);
       row_e -= e.size * (e.d.transpose() * d_slope - with_mean + eigen(e.arm) * d_along * normals);
       row_e.segment<3>(3 * place_of_source_[nodes_[e.node]]) -= e.size * along;
     }

@@ -84,11 +84,13 @@ namespace Nodus
     void add_face(const ContactSurfaces &surfaces, const FaceVariation &face, unsigned int a);
     /// ... which become means: the variation of @p row from the variation of what it was before the division.
     void take_means(const AveragedJump::Row &row);
-    /// Replaces the variation of the weights by that after the change that balances moments (eq. G28-G30). @p averaged:
-    /// shares follow the weights.
+    /// Replaces the variation of the weights by that after the change that balances moments (eq. G28-G30). @p master:
+    /// where shares are of nodes around.
     void balance(const JumpOperator       &jump,
+                 const ContactSurfaces    &surfaces,
                  unsigned int              site,
-                 bool                      averaged,
+                 MomentBalance::Shares     shares,
+                 const SurfaceGeometry    &master,
                  const SitePairing        &frame,
                  const std::vector<Point> &x);
     /// After balance(): how the turns of the master nodes of a site with a lever vary (eq. G34), three rows each.
@@ -101,6 +103,13 @@ namespace Nodus
     using Basis = std::array<Vector3, 2>;
     struct Moments;
     struct Slope;
+    /// Fills shares_.
+    void vary_shares(const JumpOperator    &jump,
+                     const ContactSurfaces &surfaces,
+                     unsigned int           site,
+                     MomentBalance::Shares  shares,
+                     const SurfaceGeometry &master,
+                     const Vector3         &normal);
     void vary_turns(const SitePairing     &site,
                     const Basis           &b,
                     const Eigen::Matrix3d *d_b,
@@ -111,6 +120,7 @@ namespace Nodus
 
     std::vector<unsigned int> nodes_, columns_, place_of_node_, place_of_source_;
     Matrix                    rows_, turns_, slopes_; ///< slopes_: scratch
+    Matrix                    shares_;                ///< of the nodes of the row in what balances moments
     std::vector<double>       weight_;                ///< before the change that balances moments
   };
 } // namespace Nodus

@@ -9,8 +9,6 @@ namespace Nodus
 {
   namespace
   {
-    /// Faces that meet at a larger angle (cosine below this) have an edge between them, not a smooth surface.
-    constexpr double smooth_cosine = 0.70710678;
     /// Least length of an averaged normal in the plane of symmetry of its node, before it is made a unit vector.
     constexpr double in_plane = 0.5;
   } // namespace

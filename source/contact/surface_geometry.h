@@ -4,6 +4,7 @@
 #include "contact/surface.h"
 #include <nodus/parameters/parameters.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -98,6 +99,12 @@ namespace Nodus
     /// most: what facets cut off from a curved surface [length]. Of the faces of this rank.
     double bulge() const;
 
+    /// Calls f(node, part) for the nodes around a node of the surface, itself among them; the parts add up to 1. They
+    /// are those beside it on the faces that meet there and look along @p normal: those beyond an edge count less and
+    /// less and not at all from 60 degrees on.
+    template <typename Function>
+    void for_nodes_around(unsigned int node, const Vector3 &normal, const Function &f) const;
+
     bool smoothed() const
     {
       return shape_degree_ != degree_;
@@ -120,6 +127,16 @@ namespace Nodus
     void nodal_normal_derivative(unsigned int f, unsigned int n, std::vector<NodeDerivative> &derivative) const;
 
   private:
+    /// How much a face of the unit normal @p unit belongs to a surface that looks along @p normal: 1 within 45 degrees,
+    /// 0 from 60 degrees on.
+    static double belongs(const Vector3 &unit, const Vector3 &normal)
+    {
+      const double t = std::clamp((unit * normal - 0.5) / (smooth_cosine - 0.5), 0., 1.);
+      return t * t * (3. - 2. * t);
+    }
+    /// Faces that meet at a larger angle (cosine below this) have an edge between them, not a smooth surface.
+    static constexpr double smooth_cosine = 0.70710678;
+
     const std::vector<SurfaceFace>           &faces_;
     const std::vector<Point>                 &positions_;
     const std::vector<std::array<bool, dim>> &fixed_; ///< components of each node
@@ -170,6 +187,31 @@ namespace Nodus
                                      const dealii::Tensor<2, dim> &factor,
                                      std::vector<NodeDerivative>  &derivative) const;
   };
+
+  template <typename Function>
+  void SurfaceGeometry::for_nodes_around(const unsigned int node, const Vector3 &normal, const Function &f) const
+  {
+    const unsigned int n_line = degree_ + 1, n_face = n_line * n_line;
+    double             sum = 0.;
+    for (unsigned int o = start_[node]; o < start_[node + 1]; ++o)
+      sum += belongs(unit_[occurrence_[o]], normal);
+    if (sum < 0.1) // nothing looks that way
+    {
+      f(node, 1.);
+      return;
+    }
+    for (unsigned int o = start_[node]; o < start_[node + 1]; ++o)
+    {
+      const unsigned int face = occurrence_[o] / n_face, n = occurrence_[o] % n_face;
+      const unsigned int i = n % n_line, j = n / n_line;
+      const unsigned int i_begin = i > 0 ? i - 1 : 0, i_end = std::min(i + 2, n_line);
+      const unsigned int j_begin = j > 0 ? j - 1 : 0, j_end = std::min(j + 2, n_line);
+      const double       part = belongs(unit_[occurrence_[o]], normal) / (sum * (i_end - i_begin) * (j_end - j_begin));
+      for (unsigned int l = j_begin; l < j_end; ++l)
+        for (unsigned int k = i_begin; k < i_end; ++k)
+          f(faces_[face].nodes[l * n_line + k], part);
+    }
+  }
 } // namespace Nodus
 
 #endif

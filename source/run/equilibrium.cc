@@ -213,6 +213,7 @@ namespace Nodus
         std::max({largest_entry(forces_.internal), largest_entry(forces_.external), largest_entry(forces_.contact)});
     // Without the second a body that only translates would be measured against its own noise.
     const double scale = std::max(largest, least.force);
+    forces_.largest    = largest;
     forces_.noise      = largest > 0. ? least.noise / largest : 0.;
     const OwnedValues out(forces_.out_of_balance), in(forces_.internal), ex(forces_.external), on(forces_.contact);
     for (const auto i : owned)

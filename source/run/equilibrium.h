@@ -36,8 +36,9 @@ namespace Nodus
     Vector drag;           ///< of viscous stabilisation
     Vector released;       ///< what is left of reactions where nothing is prescribed any more
     Vector out_of_balance; ///< the sum, zero where prescribed
-    double scale = 0.;     ///< that they are relative to in the norms
-    double noise = 0.;     ///< Measures::noise over the largest of them: beyond 1, round-off limits what is known
+    double scale   = 0.;   ///< that they are relative to in the norms
+    double largest = 0.;   ///< of all nodes and kinds
+    double noise   = 0.;   ///< NormScales::noise over the largest one: beyond 1, round-off limits what is known
   };
 
   /// Equilibrium of all bodies at the end of an increment, as Newton sees it: residual, tangent and correction.

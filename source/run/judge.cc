@@ -22,7 +22,7 @@ namespace Nodus
     /// ... and by this: what pairing from another state finds is the same up to round-off alone.
     constexpr double round_off = 1e-6;
     /// The resultant of a body and that of a pair, relative; the moment of a pair in forces times mean faces.
-    constexpr double body_tolerance = 1e-6, pair_force_tolerance = 1e-9, pair_moment_tolerance = 0.1;
+    constexpr double body_tolerance = 1e-6, pair_force_tolerance = 1e-9, pair_moment_tolerance = 1e-8;
     /// Of contradicted statuses, of the largest pressure or of the cone.
     constexpr double status_tolerance = 1e-3;
     /// Of the mean face of the side with the smaller ones; and in a pair without a closed site, where facets of curved
@@ -302,7 +302,9 @@ namespace Nodus
         for (unsigned int i = 0; i < 2; ++i)
           if (!pairing.tangent_free[i])
             raise(slip,
-                  std::abs(pairing.tangent[i] * contact_->jump().jump_of_increment(s, contact_->state().increment)));
+                  std::abs(pairing.tangent[i] *
+                           prescribed_motion(
+                               surfaces, contact_->pairing(), contact_->jump(), contact_->state().increment, s)));
     }
     for (const auto &[measure, violation, tolerance] :
          {std::make_tuple(Measure::held_depth, &depth, tolerated_held_depth),

@@ -271,13 +271,15 @@ namespace Nodus
   /// Says what round-off leaves of forces that are small against stiffness times displacement.
   void LoadPath::warn_of_noise() const
   {
-    const double noise = parts_.equilibrium.forces().noise;
-    if (noise <= large_noise)
-      return;
+    const NodalForces &forces = parts_.equilibrium.forces();
+    const double       lost   = forces.noise * parts_.model.parameters.newton.force_tolerance;
+    if (forces.noise <= large_noise ||
+        std::max(forces.external.linfty_norm(), forces.contact.linfty_norm()) <= lost * forces.largest)
+      return; // the latter: nothing acts
     std::ostringstream text;
-    text << std::setprecision(2) << "warning: round-off of displacements as large as these leaves "
-         << noise * parts_.model.parameters.newton.force_tolerance
-         << " of the largest force unknown; bodies that start near each other lose fewer digits";
+    text << std::setprecision(2) << "warning: round-off leaves " << lost
+         << " of the largest force unknown: forces are small against the stiffness of the bodies times the size of a "
+            "cell, or times the displacements; bodies that start near each other lose fewer digits";
     parts_.journal.console.remark(text.str());
   }
 

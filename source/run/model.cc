@@ -8,6 +8,7 @@
 #include <deal.II/fe/fe_q.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace Nodus
@@ -41,6 +42,25 @@ namespace Nodus
       for (const auto &pair : pairs)
         result.push_back(pair.slave);
       return result;
+    }
+
+    /// Size over degree of the deformable cell whose nodes are the stiffest: modulus times size. Collective.
+    double stiffest_cell(const Bodies                                 &bodies,
+                         const std::vector<std::unique_ptr<Material>> &materials,
+                         const unsigned int                            degree,
+                         const MPI_Comm                                communicator)
+    {
+      double size = 0., stiffness = 0.;
+      for (const auto &cell : bodies.triangulation().active_cell_iterators())
+        if (const Material &material = *materials[cell->material_id()];
+            cell->is_locally_owned() && !material.is_rigid())
+          if (const double here = std::cbrt(cell->measure()) / degree; material.youngs_modulus() * here > stiffness)
+          {
+            size      = here;
+            stiffness = material.youngs_modulus() * here;
+          }
+      const double largest = dealii::Utilities::MPI::max(stiffness, communicator);
+      return dealii::Utilities::MPI::max(stiffness == largest ? size : 0., communicator);
     }
   } // namespace
 
@@ -105,6 +125,7 @@ namespace Nodus
       const auto ends = bodies.bounding_box(b).get_boundary_points();
       length_scale    = std::max(length_scale, 1e-6 * ends.first.distance(ends.second));
     }
+    stiffest_cell = Nodus::stiffest_cell(bodies, materials, fe.degree, communicator);
     contact->gather(now.unknowns, now.unknowns.block(0));
   }
 

@@ -65,7 +65,8 @@ namespace Nodus
     std::unique_ptr<SolidAssembler>             solid;
     std::unique_ptr<ViscousStabilisation>       stabilisation;
     std::unique_ptr<ContactInterface>           contact;
-    double length_scale = 0.; ///< displacements are measured against this when the step moves nothing [length]
+    double length_scale  = 0.; ///< displacements are measured against this when the step moves nothing [length]
+    double stiffest_cell = 0.; ///< size over degree of the cell with the largest modulus times size [length]
   };
 } // namespace Nodus
 

@@ -14,7 +14,7 @@ namespace Nodus
     NormScales(const Model &model, const Vector &u, const Vector &start, double stiffness);
 
     double length; ///< [length]
-    double noise;  ///< of forces at displacements as large as these [force]
+    double noise;  ///< of forces, from displacements as large as these and from strains [force]
     double force;  ///< [force]
   };
 } // namespace Nodus

@@ -3,6 +3,8 @@
 Signs are those of theory.md: normals from slave to master, distances positive inside; the gap of users is minus the distance.
 """
 
+import collections
+
 import numpy as np
 
 import geometry
@@ -124,7 +126,7 @@ class Pair:
         masters = self.master.faces[face]
         size = self.slave_size()
         for i, k in enumerate(hit):
-            self._balance(rows, k, masters[i], np.full(masters.shape[1], 1 / masters.shape[1]), size)
+            self._balance(rows, k, *self._shares_around(masters[i], rows.g[k, masters[i]], rows.normal[k]), size)
         # trapezoids, Simpson's rule, or p + 2 Gauss points (section 8), current configuration
         lumped = self.keys.get("Weights", "nodal quadrature") == "nodal quadrature"
         xi, eta, w = geometry.square_rule("Newton-Cotes" if lumped else "Gauss", self.degree + (1 if lumped else 2))
@@ -231,7 +233,10 @@ class Pair:
         rows.distance[on] = (mean[on] * rows.normal[on]).sum(1) / rows.area[on]
         for k in on:
             masters = np.where((np.abs(rows.g[k]) > 1e-13) & ~rows.slave)[0]
-            self._balance(rows, k, masters, np.abs(rows.g[k, masters]), np.sqrt(whole[k]))
+            share = np.abs(rows.g[k, masters])
+            if self.keys.get("Integration", "segment") == "face":
+                masters, share = self._shares_around(masters, share, rows.normal[k])
+            self._balance(rows, k, masters, share, np.sqrt(whole[k]))
         # nodes without partner have the area of their whole surface
         plain = np.zeros(len(self.nodes))
         xi, eta, w = geometry.square_rule("Newton-Cotes", self.degree + 1)
@@ -244,6 +249,23 @@ class Pair:
         corners = self.bodies.X[self.slave.faces.reshape(len(self.slave.faces), -1)]
         a, b = corners[:, -1] - corners[:, 0], corners[:, -1 - self.degree] - corners[:, self.degree]
         return np.sqrt(np.mean(0.5 * np.linalg.norm(np.cross(a, b), axis=1)))
+
+    def _shares_around(self, nodes, weights, normal):
+        """(J6): nodes and their shares."""
+        m, shares = self.master, collections.defaultdict(float)
+        for node, weight in zip(nodes, np.abs(weights)):
+            faces, places = np.where(m.faces == node)
+            step = np.clip((-m.unit[faces, places] @ normal - 0.5) / (np.sqrt(0.5) - 0.5), 0, 1)
+            belongs = step**2 * (3 - 2 * step)
+            if belongs.sum() < 0.1:
+                shares[node] += weight
+                continue
+            for face, place, part in zip(faces, places, belongs / belongs.sum()):
+                j, i = divmod(place, m.n)
+                beside = m.faces[face].reshape(m.n, m.n)[max(j - 1, 0) : j + 2, max(i - 1, 0) : i + 2].ravel()
+                for other in beside:
+                    shares[other] += weight * part / len(beside)
+        return np.array(list(shares)), np.array(list(shares.values()))
 
     def _balance(self, rows, k, masters, share, size):
         """(J4), (J5): master weights that put the (mean) master point on the normal through the slave point, and turns for what is
