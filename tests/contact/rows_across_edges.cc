@@ -1,0 +1,100 @@
+// Rows of the jump operator where a slave node passes over an edge between two faces of a curved master, on smoothed
+// surfaces and with friction: the weights that balance moments do not jump there (eq. J4, J5 with the shares J6).
+
+#include "../contact_fixture.h"
+
+#include <map>
+
+using namespace Cases;
+
+namespace
+{
+  using Pair = ContactPairParameters;
+
+  /// Weights, turns times the lever and lever of a site, by node.
+  std::map<unsigned int, std::array<double, 4>> row(ContactFixture &fixture, const unsigned int site)
+  {
+    std::map<unsigned int, std::array<double, 4>> result;
+    for (auto e = fixture.jump.begin(site); e != fixture.jump.end(site); ++e)
+    {
+      const Vector3 turn = fixture.jump.lever(site) * e->turn;
+      result[e->node]    = {{e->weight, turn[0], turn[1], turn[2]}};
+    }
+    return result;
+  }
+
+  void pass(const std::string &name, const unsigned int degree, const bool hanging)
+  {
+    std::vector<BodyParameters> bodies{box("lower", "4,4,1", {-1, -1, -1}, {1, 1, 0}, 1, 0),
+                                       box("upper", "1,1,1", {-0.5, -0.5, 0}, {0.5, 0.5, 1}, 1, 0)};
+    if (hanging)
+    {
+      bodies[0].refine_where     = "x<0";
+      bodies[0].local_refinement = 1;
+    }
+    Pair p                 = pair(region(2, {z_minus}), region(1, {z_plus}));
+    p.scheme               = Pair::Scheme::nodal;
+    p.surface              = Pair::Surface::smoothed;
+    p.normal               = Pair::Normal::averaged;
+    p.friction_coefficient = 0.3;
+    ContactFixture    fixture(bodies, {p}, degree);
+    auto             &x = fixture.state.x;
+    std::vector<bool> is_slave(x.size(), false);
+    for (const SlaveNode &k : fixture.surfaces->slave_nodes())
+      is_slave[k.node] = true;
+    for (unsigned int i = 0; i < x.size(); ++i)
+      if (!is_slave[i])
+        x[i][2] -= 0.15 * x[i][0] * x[i][0] + 0.1 * x[i][1] * x[i][1] + 0.04 * x[i][0] * x[i][1];
+    for (unsigned int i = 0; i < x.size(); ++i) // hanging nodes go where those are that they follow
+      if (const SurfaceNode &node = fixture.surfaces->nodes()[i]; !node.masters.empty())
+      {
+        Vector3 at = node.offset;
+        for (const auto &[master, weight] : node.masters)
+          at += weight * x[master];
+        x[i] = Point(at);
+      }
+    const auto start = x;
+    const auto go_to = [&](const double s) // the first node across the edge x = -0.5
+    {
+      for (unsigned int i = 0; i < x.size(); ++i)
+        if (is_slave[i])
+          x[i] = start[i] + Vector3({0.2 * s - 0.1, 0.13, -0.05});
+      fixture.pair_at(x);
+      return fixture.pairing[0].master.face;
+    };
+    const unsigned int first = go_to(0.), last = go_to(1.);
+    report(name + ": the node goes from one face to another", first == last ? "NO" : "yes");
+    double low = 0., high = 1.;
+    while (high - low > 1e-9)
+    {
+      const double middle                   = 0.5 * (low + high);
+      (go_to(middle) == first ? low : high) = middle;
+    }
+    go_to(low);
+    const auto before = row(fixture, 0);
+    go_to(high);
+    auto   after   = row(fixture, 0);
+    double largest = 0., change = 0.;
+    for (const auto &[node, values] : before)
+      after.emplace(node, std::array<double, 4>{{0., 0., 0., 0.}});
+    for (const auto &[node, values] : after)
+    {
+      const auto at = before.find(node);
+      for (unsigned int i = 0; i < 4; ++i)
+      {
+        change  = std::max(change, std::abs(values[i] - (at == before.end() ? 0. : at->second[i])));
+        largest = std::max(largest, std::abs(values[i]));
+      }
+    }
+    report(name + ": change across an edge, of a largest entry of " + Numbers::number(largest, 3),
+           Numbers::error_below(change, 1e-4, 2));
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  pass("degree 1", 1, false);
+  pass("degree 1, hanging nodes", 1, true);
+  pass("degree 2", 2, false);
+}
