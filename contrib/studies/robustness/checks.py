@@ -309,7 +309,8 @@ def check_energy(find, state, before, row_of, row, sums, stored, blur):
             sums["blur"] += (np.linalg.norm(pair.force, axis=1) * digits).sum()
             sums["contact"] += (0.5 * ((pair.force + old.force) * pair.normal).sum(1) * across).sum()
     scale = max(abs(v) for v in columns.values())
-    if scale == 0:
+    stiffest = max(float(m["Young's modulus"]) for m in case.facts["materials"])
+    if scale < 1e-24 * stiffest * min(pair.cell for pair in state.pairs) ** 3:  # strains of round-off: nothing touches yet
         return
     sums["loops"] = sums.get("loops", False) or state.fixed_point
     slip_work = PAIRING_LOOPS if sums["loops"] else SLIP_WORK
