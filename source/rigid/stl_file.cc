@@ -163,9 +163,12 @@ namespace Nodus
     const std::size_t n = content.size() < head ? 0 : integer(content.data() + header_size);
     if (content.size() >= head && content.size() == head + n * triangle_size)
       result = read_binary(file, content);
-    else if (const std::string begin = content.substr(0, 1000);
-             begin.find('\0') == std::string::npos && Words(file, begin).next() == "solid")
+    else if (const std::string begin = content.substr(0, 1000); begin.find('\0') == std::string::npos)
+    {
+      if (!begin.empty() && Words(file, begin).next() != "solid")
+        refuse(file, "does not begin with 'solid' as an ASCII STL file does; give an STL file, ASCII or binary");
       result = read_ascii(file, content);
+    }
     else
       refuse(file,
              "has " + std::to_string(content.size()) + " bytes" +
