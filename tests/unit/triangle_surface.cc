@@ -36,6 +36,8 @@ namespace
 
   void show(const std::string &what, const double error, const double bound)
   {
+    if (bound < 1e-10) // round-off has no digits
+      return check(what + " within " + Numbers::plain(bound), error <= bound);
     report(what, Numbers::number(error, 2) + (error <= bound ? "" : ", more than " + Numbers::plain(bound) + ": NO"));
   }
 
@@ -231,7 +233,7 @@ namespace
         nearest = std::min(nearest, x.distance(p));
       farther = std::max(farther, std::abs(surface.closest(p).height) - nearest);
     }
-    show("  no point of it is nearer than the closest one, by", std::max(farther, 0.), 1e-12);
+    show("  no point of it is nearer than the closest one", std::max(farther, 0.), 1e-12);
     check("  derivative of the normal", gradient < 1e-6);
     check("  of the closest point", slide < 1e-6);
     show("  closest points move at most, over the point's way", jump, 2.);
