@@ -64,18 +64,23 @@ namespace Nodus
     {
       const SurfaceGeometry &slave = geometry.slave[pair];
       double                 area = 0., covered = 0.;
+      bool                   inside = false;
       for (unsigned int q = 0; q < rule.size(); ++q)
       {
         const double       xi = rule.point(q)[0], eta = rule.point(q)[1];
         const FaceGeometry point = slave.at(f, xi, eta);
         const double       part  = rule.weight(q) * point.area_vector().norm();
         area += part;
-        if (!geometry.closest_on_rigid(pair, point.x, slave.normal(f, xi, eta)).found)
+        const RigidPoint master = geometry.closest_on_rigid(pair, point.x, slave.normal(f, xi, eta));
+        if (!master.found)
           continue;
         covered += part;
+        inside = inside || master.overhang == 0.;
         points.push_back({xi, eta, rule.weight(q), Projection()});
       }
-      return covered / area;
+      if (!inside)
+        points.clear();
+      return inside ? covered / area : 0.;
     }
 
     /// A hanging node is where those are that it follows, but for its reference position.

@@ -138,15 +138,18 @@ namespace Nodus
       master.emplace_back(surfaces.master_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
       search.emplace_back(master[p]);
       rigid.push_back(surfaces.rigid_master(p));
+      overhang.push_back(pairs[p].projection_tolerance * surfaces.face_size(p));
     }
   }
 
-  RigidPoint
-  ContactGeometry::closest_on_rigid(const unsigned int pair, const Point &p, const Vector3 &slave_normal) const
+  RigidPoint ContactGeometry::closest_on_rigid(const unsigned int pair,
+                                               const Point       &p,
+                                               const Vector3     &slave_normal,
+                                               const double       tolerance) const
   {
     RigidPoint point = rigid[pair]->closest(p);
-    point.found =
-        point.found && std::abs(point.height) <= reach[pair] && point.normal * slave_normal <= far_side_cosine;
+    point.found      = point.found && std::abs(point.height) <= reach[pair] &&
+                  point.overhang <= tolerance * overhang[pair] && point.normal * slave_normal <= far_side_cosine;
     return point;
   }
 

@@ -52,15 +52,18 @@ namespace Nodus
                     const ContactSurfaces                    &surfaces,
                     const std::vector<Point>                 &positions);
 
-    /// Point of a rigid master that is a partner of @p p, by the same rules as those of MasterSearch.
-    RigidPoint closest_on_rigid(unsigned int pair, const Point &p, const Vector3 &slave_normal) const;
+    /// Point of a rigid master that is a partner of @p p, by the same rules as those of MasterSearch. @p tolerance:
+    /// over that of the pair.
+    RigidPoint
+    closest_on_rigid(unsigned int pair, const Point &p, const Vector3 &slave_normal, double tolerance = 1.) const;
     /// Position of a site.
     Point position(const ContactSurfaces &surfaces, unsigned int site) const;
 
     std::vector<SurfaceGeometry>      slave, master;
     std::vector<MasterSearch>         search;
-    std::vector<const RigidSurface *> rigid; ///< masters without faces, or nullptr
-    std::vector<double>               reach; ///< farther master points are no partners [length]
+    std::vector<const RigidSurface *> rigid;    ///< masters without faces, or nullptr
+    std::vector<double>               reach;    ///< farther master points are no partners [length]
+    std::vector<double>               overhang; ///< of a projection over the rim of a rigid master, at most [length]
   };
 
   /// Closest point of face @p f to @p p: local coordinates in [0, 1]^2 (clamped at edges and vertices).

@@ -18,8 +18,8 @@ namespace Nodus
     constexpr double lift = 0.1;
     /// Where a step would take nodes through the other surface they end this part of a face behind it.
     constexpr double landing_depth = 0.25;
-    /// Of a way, to a third less each: what is left is nothing.
-    constexpr unsigned int most_sections = 60;
+    /// Parts of a way that are looked at, which is halved where it may dip into a rigid body.
+    constexpr unsigned int most_parts = 10000, most_halves = 60;
 
     /// What is found of one pair.
     class Search
@@ -123,7 +123,7 @@ namespace Nodus
         return part;
       }
 
-      /// Slave nodes against a rigid master in closed form. What moves relative to it does so in the frame that turns
+      /// Slave nodes against a rigid master without faces. What moves relative to it does so in the frame that turns
       /// with it, and in the one that only moves with its point: a node that passes does so in both, one that a tool
       /// slides along or rolls over in one at most.
       void find(const std::vector<SurfaceFace> &own, RigidSurface &master, const double begin, const double end)
@@ -214,22 +214,31 @@ namespace Nodus
                                                                                     : 0.;
       }
 
-      /// Whether the straight way between two points outside goes deeper into a rigid body than is tolerated. Along a
-      /// line the height over a convex body is convex, and that over a cavity is least at an end.
+      /// Whether the straight way between two points outside goes deeper into a rigid body than is tolerated. Heights
+      /// change by no more than the way: a part whose ends are high enough for its length does not.
       bool dips(const RigidSurface &master, const Point &from, const Point &to) const
       {
+        struct Part
+        {
+          double begin, end, height_begin, height_end;
+        };
         const auto   height = [&](const double s) { return master.height(Point(from + s * (to - from))); };
         const double way    = from.distance(to);
-        if (0.5 * (height(0.) + height(1.) - way) > -tolerated_) // heights change by no more than the way
-          return false;
-        double left = 0., right = 1.;
-        for (unsigned int i = 0; i < most_sections && (right - left) * way > 0.1 * tolerated_; ++i)
+        std::array<Part, most_halves> parts; // those yet to be looked at
+        parts[0]       = {0., 1., height(0.), height(1.)};
+        unsigned int n = 1;
+        for (unsigned int i = 0; i < most_parts && n > 0; ++i)
         {
-          const double a = left + (right - left) / 3., b = right - (right - left) / 3.;
-          const double height_a = height(a), height_b = height(b);
-          if (std::min(height_a, height_b) < -tolerated_)
+          const Part   part   = parts[--n];
+          const double length = (part.end - part.begin) * way;
+          if (0.5 * (part.height_begin + part.height_end - length) > -tolerated_ || length < 0.1 * tolerated_ ||
+              n + 2 > most_halves)
+            continue;
+          const double middle = 0.5 * (part.begin + part.end), height_middle = height(middle);
+          if (height_middle < -tolerated_)
             return true;
-          (height_a < height_b ? right : left) = height_a < height_b ? b : a;
+          parts[n++] = {middle, part.end, height_middle, part.height_end};
+          parts[n++] = {part.begin, middle, part.height_begin, height_middle};
         }
         return false;
       }

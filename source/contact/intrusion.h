@@ -35,7 +35,7 @@ namespace Nodus
   };
   /// Those of this rank that are deeper than @p tolerated of their pair at the positions @p x of
   /// ContactSurfaces::nodes(), without a limit from above. Of nodes that are not in the box @p around of the other side
-  /// nothing is said; not of rigid masters in closed form either. Collective.
+  /// nothing is said; not of rigid masters without faces either. Collective.
   std::vector<DeepNode>
   find_deep_nodes(const ContactSurfaces                                                    &surfaces,
                   const std::vector<Point>                                                 &x,
@@ -48,7 +48,7 @@ namespace Nodus
   /// A node is behind a surface where the nearest point of the surface is none of its rim, has the node on its inner
   /// side and does not look the way of the node's own surface. It has passed where its way from @p before to @p now, a
   /// straight line, has for the last time crossed the other surface, which moves likewise, from its front, and ends
-  /// farther than the tolerated depth from it; or where it begins and ends outside of a rigid master in closed form,
+  /// farther than the tolerated depth from it; or where it begins and ends outside of a rigid master without faces,
   /// and was deeper in it than that on the way.
   ///
   /// @p before, @p now: positions of ContactSurfaces::nodes(); @p begin, @p end: times of the increment, for rigid
@@ -63,7 +63,7 @@ namespace Nodus
 
   /// The part, 0 to 1, of the way from @p before to @p now on which no node goes farther behind the other surface than
   /// pairing looks (search_reach()). Where one would, the way ends a quarter of a face behind the surface; 1 where none
-  /// does. Of rigid masters in closed form nothing is said. Collective.
+  /// does. Of rigid masters without faces nothing is said. Collective.
   double visible_part(const std::vector<ContactPairParameters> &pairs,
                       const ContactSurfaces                    &surfaces,
                       const std::vector<Point>                 &before,

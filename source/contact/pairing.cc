@@ -169,14 +169,13 @@ namespace Nodus
       SitePairing       &pairing = sites_[s];
       const unsigned int p       = surfaces.pair(s);
       RigidPoint         rigid;
+      const double       tolerance = partnered_[s] ? partner_hysteresis : 1.;
       if (geometry.rigid[p] != nullptr)
-        rigid = geometry.closest_on_rigid(p, sites.x[s], sites.normal[s]);
+        rigid = geometry.closest_on_rigid(p, sites.x[s], sites.normal[s], tolerance);
       else
-      {
-        const double tolerance = (partnered_[s] ? partner_hysteresis : 1.) * pairs[p].projection_tolerance;
-        pairing.master         = geometry.search[p].closest(sites.x[s], sites.normal[s], geometry.reach[p], tolerance);
-        partnered_[s]          = pairing.master.found();
-      }
+        pairing.master = geometry.search[p].closest(
+            sites.x[s], sites.normal[s], geometry.reach[p], tolerance * pairs[p].projection_tolerance);
+      partnered_[s]       = rigid.found || pairing.master.found();
       const bool averages = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
       const bool paired   = averages ? averaged.covered(s) : pairing.master.found() || rigid.found;
       // A node of the integration point scheme needs a frame for its multipliers even where its own projection fails.

@@ -36,9 +36,12 @@ namespace Nodus
     {
       sites_.has_points.push_back(pairs[p].scheme == ContactPairParameters::Scheme::integration_point);
       directory_.collect(Region(pairs[p].slave, bodies, pair_label(pairs, p) + ", slave"), mapping, p, slave_side);
-      rigid_masters_.push_back(pairs[p].has_rigid_master()
-                                   ? std::make_unique<RigidSurface>(pairs[p].master_surface, pair_label(pairs, p))
-                                   : nullptr);
+      rigid_masters_.push_back(
+          pairs[p].has_rigid_master()
+              ? std::make_unique<RigidSurface>(pairs[p].master_surface,
+                                               pair_label(pairs, p),
+                                               pairs[p].surface == ContactPairParameters::Surface::smoothed)
+              : nullptr);
       if (!rigid_masters_[p])
         directory_.collect(Region(pairs[p].master, bodies, pair_label(pairs, p) + ", master"), mapping, p, master_side);
     }

@@ -332,6 +332,9 @@ namespace Nodus
     for (auto &body : parameters.bodies)
       if (!body.mesh_file.empty())
         body.mesh_file = (path.parent_path() / body.mesh_file).lexically_normal().string();
+    for (auto &pair : parameters.contact_pairs)
+      if (std::string &name = pair.master_surface.file; !name.empty())
+        name = (path.parent_path() / name).lexically_normal().string();
     for (auto &condition : parameters.boundary_conditions)
       if (condition.value.size() == 1 && condition.components.size() > 1)
         condition.value.resize(condition.components.size(), std::string(condition.value[0]));

@@ -2,6 +2,7 @@
 #include "parameters/parameter_checks.h"
 
 #include <algorithm>
+#include <filesystem>
 
 // Contact pairs, and what they share with bodies and boundary conditions.
 
@@ -158,9 +159,43 @@ namespace Nodus
       }
     }
 
+    /// What a rigid surface is given by.
+    void check_shape(const Section &section, const MasterSurfaceParameters &surface, const std::string &shape)
+    {
+      using Shape      = MasterSurfaceParameters::Shape;
+      const bool plane = surface.shape == Shape::plane, triangles = surface.shape == Shape::triangles;
+      if (triangles)
+      {
+        std::error_code unknown;
+        section.require(!surface.file.empty(), "Master file", "is missing; give the STL file of the triangles");
+        section.require(std::filesystem::is_regular_file(surface.file, unknown),
+                        "Master file",
+                        "is no file: " + surface.file + "; names are relative to the folder of the .prm file");
+        for (const auto &[key, given] :
+             {Given("Master radius", surface.radius != 0.), Given("Master axis", surface.axis != Vector3())})
+          section.require(!given, key, "has no meaning for triangles; remove it, their file has the shape");
+        return;
+      }
+      for (const auto &[key, given] :
+           {Given("Master file", !surface.file.empty()), Given("Master scale", surface.scale != 1.)})
+        section.require(
+            !given, key, "has no meaning for a " + shape + "; remove it, or set 'Master surface = triangles'");
+      section.require(plane || surface.radius > 0., "Master radius", "must be given and > 0 for a " + shape);
+      section.require(!plane || surface.radius == 0., "Master radius", "has no meaning for a plane; remove it");
+      section.require(
+          !plane || !surface.cavity,
+          "Master cavity",
+          "has no meaning for a plane; remove it, the body is on the side that Master axis points away from");
+      section.require(surface.shape == Shape::sphere || surface.axis.norm() > 0.,
+                      "Master axis",
+                      std::string("must be given and not zero: ") +
+                          (surface.shape == Shape::cylinder ? "the direction of the cylinder"
+                                                            : "the normal out of the rigid body") +
+                          ", for example 0, 0, 1");
+    }
+
     void check_master(const Section &section, const ContactPairParameters &pair, const unsigned int n_bodies)
     {
-      using Shape         = MasterSurfaceParameters::Shape;
       const auto &surface = pair.master_surface;
       if (!pair.has_rigid_master())
       {
@@ -175,12 +210,14 @@ namespace Nodus
                                          Given("Master axis", surface.axis != Vector3()),
                                          Given("Master radius", surface.radius != 0.),
                                          Given("Master cavity", surface.cavity),
+                                         Given("Master file", !surface.file.empty()),
+                                         Given("Master scale", surface.scale != 1.),
                                          Given("Master translation", is_given(surface.motion))})
           section.require(
               !given,
               key,
               "and the like have no effect on a meshed master; remove them, or set Master surface to plane, "
-              "sphere, cylinder or paraboloid");
+              "sphere, cylinder, paraboloid or triangles");
         return;
       }
       const std::string shape = text_of(surface.shape);
@@ -190,19 +227,7 @@ namespace Nodus
                         key,
                         "has no meaning besides 'Master surface = " + shape +
                             "', which has no mesh; remove one of the two");
-      const bool plane = surface.shape == Shape::plane, sphere = surface.shape == Shape::sphere;
-      section.require(plane || surface.radius > 0., "Master radius", "must be given and > 0 for a " + shape);
-      section.require(!plane || surface.radius == 0., "Master radius", "has no meaning for a plane; remove it");
-      section.require(
-          !plane || !surface.cavity,
-          "Master cavity",
-          "has no meaning for a plane; remove it, the body is on the side that Master axis points away from");
-      section.require(sphere || surface.axis.norm() > 0.,
-                      "Master axis",
-                      std::string("must be given and not zero: ") +
-                          (surface.shape == Shape::cylinder ? "the direction of the cylinder"
-                                                            : "the normal out of the rigid body") +
-                          ", for example 0, 0, 1");
+      check_shape(section, surface, shape);
       section.require(pair.master.body <= n_bodies,
                       "Master body",
                       "is " + std::to_string(pair.master.body) +
@@ -210,8 +235,8 @@ namespace Nodus
                           std::to_string(n_bodies) + ", or 0 for none");
       section.require(!pair.has_carried_master() || !is_given(surface.motion),
                       "Master translation",
-                      "and the like have no effect on a " + shape +
-                          " that moves with its Master body; remove them, or say there how it moves");
+                      "and the like have no effect on a surface that moves with its Master body; remove them, or say "
+                      "there how it moves");
       check(section, surface.motion, "Master ", surface.motion.rotation_axis == Vector3() ? surface.axis : Vector3());
     }
   } // namespace

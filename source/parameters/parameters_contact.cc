@@ -15,7 +15,8 @@ namespace Nodus
         {MasterSurfaceParameters::Shape::plane, "plane"},
         {MasterSurfaceParameters::Shape::sphere, "sphere"},
         {MasterSurfaceParameters::Shape::cylinder, "cylinder"},
-        {MasterSurfaceParameters::Shape::paraboloid, "paraboloid"}};
+        {MasterSurfaceParameters::Shape::paraboloid, "paraboloid"},
+        {MasterSurfaceParameters::Shape::triangles, "triangles"}};
 
     const Names<ContactPairParameters::Scheme> scheme_names = {
         {ContactPairParameters::Scheme::nodal, "nodal"},
@@ -148,17 +149,31 @@ namespace Nodus
     /// A rigid surface instead of a meshed master.
     void add_master_surface(ParameterHandler &prm, MasterSurfaceParameters &surface)
     {
-      add_choice(prm,
-                 "Master surface",
-                 surface.shape,
-                 shape_names,
-                 "What the slave touches [-]: faces of a mesh, or a rigid surface in closed form, without boundary "
-                 "ids. It moves as Master translation and Master rotation say, or, with a Master body, with that rigid "
-                 "body. A paraboloid is one of revolution.");
+      add_choice(
+          prm,
+          "Master surface",
+          surface.shape,
+          shape_names,
+          "What the slave touches [-]: faces of a mesh, or a rigid surface without boundary ids, in closed form or "
+          "the triangles of an STL file. It moves as Master translation and Master rotation say, or, with a "
+          "Master body, with that rigid body. A paraboloid is one of revolution.");
+      prm.add_parameter("Master file",
+                        surface.file,
+                        "Rigid surface of triangles: STL file, ASCII or binary, relative to the folder of the .prm "
+                        "file [-]. The corners of a triangle go round counter-clockwise seen from outside of the rigid "
+                        "body; the surface is closed or open, of one piece or several. Surface says whether the "
+                        "triangles are rounded.",
+                        Patterns::FileName());
+      prm.add_parameter("Master scale",
+                        surface.scale,
+                        "Rigid surface of triangles: factor on the coordinates in the file, e.g. 1000 for a file in "
+                        "metres and a case in millimetres [-].",
+                        positive);
       prm.add_parameter("Master point",
                         surface.point,
                         "Rigid surface: a point of the plane, the centre of the sphere, a point on the axis of the "
-                        "cylinder, the apex of the paraboloid, at t = 0 [length]; three numbers.");
+                        "cylinder, the apex of the paraboloid, where the origin of the file of triangles is, at t = 0 "
+                        "[length]; three numbers.");
       prm.add_parameter("Master axis",
                         surface.axis,
                         "Rigid surface: axis of the cylinder; normal of the plane, or of the paraboloid at its apex, "
@@ -171,7 +186,7 @@ namespace Nodus
       prm.add_parameter("Master cavity",
                         surface.cavity,
                         "Rigid surface: whether the slave is inside of the sphere, cylinder or paraboloid, and the "
-                        "rigid body around it [-].");
+                        "rigid body around it [-]. Triangles are turned over: the other side is outside.");
       add_motion(prm, "Master ", surface.motion, "; zero: Master axis", "Master point");
     }
 
@@ -227,12 +242,13 @@ namespace Nodus
                  pair.weights,
                  weights_names,
                  "Integration of the contact terms over slave faces [-], nodal scheme only.");
-      add_choice(prm,
-                 "Surface",
-                 pair.surface,
-                 surface_names,
-                 "Faces of degree 1 as they are, or rounded to meet the averaged normals of the nodes [-]; edges "
-                 "sharper than 45 degrees stay.");
+      add_choice(
+          prm,
+          "Surface",
+          pair.surface,
+          surface_names,
+          "Faces of degree 1, and triangles of an STL file, as they are, or rounded to meet the averaged normals "
+          "of the nodes [-]; edges sharper than 45 degrees stay.");
       add_choice(prm,
                  "Normal",
                  pair.normal,

@@ -1,7 +1,9 @@
 #include "rigid/rigid_surface.h"
+#include "rigid/triangle_surface.h"
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace Nodus
 {
@@ -50,17 +52,38 @@ namespace Nodus
 
   dealii::Tensor<2, dim> RigidPoint::slide() const
   {
-    dealii::Tensor<2, dim> result = -height * normal_derivative();
+    dealii::Tensor<2, dim> result;
     for (unsigned int i = 0; i < 2; ++i)
-      result += dealii::outer_product(direction[i], direction[i]);
+      if (!stays[i])
+        result += (1. - height * curvature[i] / std::max(1. + height * curvature[i], least_distance)) *
+                  dealii::outer_product(direction[i], direction[i]);
     return result;
   }
 
-  RigidSurface::RigidSurface(const MasterSurfaceParameters &parameters, const std::string &label)
+  RigidSurface::RigidSurface(const MasterSurfaceParameters &parameters, const std::string &label, const bool smoothed)
       : parameters_(parameters)
       , motion_(parameters.motion, parameters.point, parameters.axis, label + ", rigid master")
   {
+    if (parameters.shape == MasterSurfaceParameters::Shape::triangles)
+      try
+      {
+        triangles_ = TriangleSurface::of_file(parameters.file,
+                                              {parameters.point, parameters.scale, parameters.cavity, smoothed});
+      }
+      catch (const InputError &error)
+      {
+        throw InputError(label + ": master file " + error.what());
+      }
     set_increment(0., 0.);
+  }
+
+  std::string RigidSurface::describe() const
+  {
+    if (!triangles_)
+      return text_of(parameters_.shape);
+    return (triangles_->is_closed() ? "closed" : "open") + std::string(" surface of ") +
+           std::to_string(triangles_->n_triangles()) + " triangles (" +
+           std::filesystem::path(parameters_.file).filename().string() + ")";
   }
 
   void RigidSurface::set_increment(const double begin, const double end)
@@ -124,14 +147,27 @@ namespace Nodus
       }
       case Shape::paraboloid:
         return closest_on_paraboloid(p);
+      case Shape::triangles:
+        return closest_on_triangles(p);
       case Shape::mesh:
         break;
     }
     return result;
   }
 
+  RigidPoint RigidSurface::closest_on_triangles(const Point &p) const
+  {
+    RigidPoint result = triangles_->closest(now_.from(p));
+    result.x          = now_.to(result.x);
+    for (Vector3 *const v : {&result.normal, &result.direction[0], &result.direction[1]})
+      *v = now_.R * *v;
+    return result;
+  }
+
   double RigidSurface::height(const Point &p) const
   {
+    if (triangles_)
+      return triangles_->height(now_.from(p));
     if (const RigidPoint point = closest(p); point.found)
       return point.height;
     // on the axis: of a sphere or a cylinder the radius away; of a paraboloid, beyond its focus, the circle where

@@ -6,20 +6,25 @@
 #include <nodus/parameters/parameters.h>
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 
 namespace Nodus
 {
+  class TriangleSurface;
+
   /// The point of a rigid surface closest to another point.
   struct RigidPoint
   {
-    bool                   found = false; ///< false where the closest point is not unique
+    bool                   found = false; ///< false where the closest point is not unique, or far beyond a rim
     Point                  x;
-    Vector3                normal;                 ///< unit, out of the rigid body
-    double                 height = 0.;            ///< of the other point along the normal [length]
-    std::array<Vector3, 2> direction;              ///< unit, of the principal curvatures
-    std::array<double, 2>  curvature = {{0., 0.}}; ///< > 0 where the rigid body is convex [1/length]
+    Vector3                normal;                       ///< unit, out of the rigid body
+    double                 height = 0.;                  ///< of the other point along the normal [length]
+    std::array<Vector3, 2> direction;                    ///< unit, of the principal curvatures
+    std::array<double, 2>  curvature = {{0., 0.}};       ///< > 0 where the rigid body is convex [1/length]
+    std::array<bool, 2>    stays     = {{false, false}}; ///< x does, across a sharp edge and at a corner
+    double overhang = 0.; ///< how far x is beyond the rim of an open surface, which goes on there [length]
 
     /// Derivatives of the normal and of x with respect to the other point (eq. R1).
     dealii::Tensor<2, dim> normal_derivative() const;
@@ -33,12 +38,13 @@ namespace Nodus
     Vector3 x, moved;
   };
 
-  /// The surface of a rigid body in closed form. It moves as prescribed, or a body of the model carries it.
+  /// The surface of a rigid body in closed form, or of triangles. It moves as prescribed, or a body of the model
+  /// carries it.
   class RigidSurface
   {
   public:
-    /// @p label: for messages. @throws InputError
-    RigidSurface(const MasterSurfaceParameters &parameters, const std::string &label);
+    /// @p label: for messages; @p smoothed: whether triangles are rounded. @throws InputError, the same on every rank
+    RigidSurface(const MasterSurfaceParameters &parameters, const std::string &label, bool smoothed = true);
 
     /// The increment at hand; the surface is where it is at its end, unless it is carried. @throws InputError on every
     /// rank
@@ -58,7 +64,11 @@ namespace Nodus
 
     RigidPoint closest(const Point &p) const;
     /// Of a point above the surface, < 0 inside the rigid body; also where the closest point is not unique [length].
+    /// Nothing is inside beyond the rim of an open surface.
     double height(const Point &p) const;
+
+    /// "sphere", or how many triangles of which file.
+    std::string describe() const;
 
     /// Where it is, and where its point is (of a sphere the centre).
     const Placement &placement() const
@@ -78,10 +88,14 @@ namespace Nodus
 
   private:
     RigidPoint closest_on_paraboloid(const Point &p) const;
+    RigidPoint closest_on_triangles(const Point &p) const;
     void       place(const Placement &placement);
 
-    MasterSurfaceParameters     parameters_;
-    PrescribedMotion            motion_;
+    MasterSurfaceParameters parameters_;
+    PrescribedMotion        motion_;
+
+    std::shared_ptr<const TriangleSurface> triangles_; ///< where they are at t = 0, or nullptr
+
     std::optional<RigidCarrier> carrier_;
     Placement                   before_, now_;
     Point                       point_; ///< now

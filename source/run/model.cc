@@ -201,7 +201,7 @@ namespace Nodus
       line << "  contact pair " << p + 1 << in_brackets(parameters.contact_pairs[p].name) << ": "
            << surfaces.n_faces(p, slave_side) << " slave faces on ";
       if (const auto &pair = parameters.contact_pairs[p]; pair.has_rigid_master())
-        line << "a rigid " << text_of(pair.master_surface.shape)
+        line << "a rigid " << surfaces.rigid_master(p)->describe()
              << (pair.has_carried_master() ? " of body " + std::to_string(pair.master.body) : "");
       else
         line << surfaces.n_faces(p, master_side) << " master faces";

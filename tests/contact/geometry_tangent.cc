@@ -1,14 +1,15 @@
 // The contact tangent with the variation of the geometry against central differences of the contact residual with
 // pairing renewed at every step, on bumpy surfaces that do not match: nodal forces kept (multipliers follow the areas),
-// friction multipliers turned with the frames, all as the solver does. Frictionless, sticking, slipping and tied; slave
-// faces that stick out of the master; bodies that have turned by 70 degrees in the increment. Exact but for how
-// smoothing shifts points along averaged surfaces, and for the areas of the nodal scheme with friction
-// (geometry_tangent.h).
+// friction multipliers turned with the frames, all as the solver does; also on rigid masters. Frictionless, sticking,
+// slipping and tied; slave faces that stick out of the master; bodies that have turned by 70 degrees in the increment.
+// Exact but for how smoothing shifts points along averaged surfaces, and for the areas of the nodal scheme with
+// friction (geometry_tangent.h).
 
 #include "contact/geometry_tangent.h"
 #include "contact/site_values.h"
 
 #include "../contact_fixture.h"
+#include "../stl.h"
 
 #include <random>
 
@@ -19,6 +20,8 @@ namespace
   using Pair   = ContactPairParameters;
   using Shape  = MasterSurfaceParameters::Shape;
   using Normal = Pair::Normal;
+
+  const std::string stl_file = "geometry_tangent.stl";
 
   enum class Friction
   {
@@ -186,8 +189,24 @@ namespace
       p.master_surface.point  = Point(0.5, 0.4, apex ? 1. : -1.);
       p.master_surface.axis   = apex ? Vector3({0.1, 0.2, 1.}) : Vector3({1., 0.1, 0.});
       p.master_surface.radius = 2.;
+      if (kind.shape == Shape::triangles)
+      {
+        p.master_surface.file   = stl_file;
+        p.master_surface.axis   = Vector3();
+        p.master_surface.radius = 0.;
+      }
     }
     return p;
+  }
+
+  /// A ball with bumps and the radius 2: triangles of 0.6.
+  void write_triangles()
+  {
+    auto triangles = Stl::icosphere(2, 2.);
+    for (auto &triangle : triangles)
+      for (Point &p : triangle)
+        p *= 1. + 0.01 * std::sin(4. * p[0] + 1.) * std::cos(3. * p[1]);
+    Stl::write_ascii(stl_file, triangles);
   }
 
   /// Bumpy surfaces that touch, and multipliers and statuses at random.
@@ -326,6 +345,10 @@ namespace
     for (const auto &[shape, name] :
          {std::make_pair(Shape::sphere, "sphere"), {Shape::cylinder, "cylinder"}, {Shape::paraboloid, "paraboloid"}})
       add({std::string("nodal, rigid ") + name, nodal, faceted}, "", [shape = shape](Kind &k) { k.shape = shape; });
+    for (const auto surface : {faceted, smoothed})
+      add({"nodal, rigid triangles, " + text_of(surface), nodal, surface},
+          "",
+          [](Kind &k) { k.shape = Shape::triangles; });
     add(nodal_facets, ", hanging nodes", [](Kind &k) { k.hanging = true; });
     add({"nodal, smoothed", nodal, smoothed}, ", hanging nodes", [](Kind &k) { k.hanging = true; });
     add(nodal_facets,
@@ -420,6 +443,17 @@ namespace
           k.shape    = Shape::paraboloid;
           k.friction = Friction::stick;
         });
+    for (const auto &[friction, name] :
+         {std::make_pair(Friction::none, ""), {Friction::stick, ", stick"}, {Friction::slip, ", slip"}})
+      add({"averaged, rigid triangles", averaged, faceted},
+          name,
+          [friction = friction](Kind &k)
+          {
+            k.shape    = Shape::triangles;
+            k.surface  = Pair::Surface::smoothed;
+            k.degree   = 2; // only the triangles are smoothed
+            k.friction = friction;
+          });
     return result;
   }
 } // namespace
@@ -428,6 +462,7 @@ int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const char *const                        only = std::getenv("NODUS_TEST_KIND");
+  write_triangles();
   for (const Kind &kind : kinds())
     if (only == nullptr || kind.name.find(only) != std::string::npos)
       measure(kind);

@@ -3,6 +3,7 @@
 // 0.5 below, a block of thickness 1.
 
 #include "../contact_fixture.h"
+#include "../stl.h"
 
 #include "contact/intrusion.h"
 #include "contact/triangles.h"
@@ -115,7 +116,8 @@ namespace
                   const MasterSurfaceParameters::Shape shape,
                   const Point                         &centre,
                   const std::vector<std::string>      &translation,
-                  const std::string                   &rotation = "0")
+                  const std::string                   &rotation = "0",
+                  const std::string                   &file     = "")
   {
     ContactPairParameters contact;
     contact.slave                             = region(1, {z_plus});
@@ -125,9 +127,54 @@ namespace
     contact.master_surface.radius             = 0.5;
     contact.master_surface.motion.translation = translation;
     contact.master_surface.motion.rotation    = rotation;
+    if (shape == MasterSurfaceParameters::Shape::triangles)
+    {
+      contact.surface               = ContactPairParameters::Surface::smoothed;
+      contact.master_surface.file   = file;
+      contact.master_surface.axis   = Vector3();
+      contact.master_surface.radius = 0.;
+    }
     ContactFixture f({box("block", "4,4,2", {0, 0, 0}, {2, 2, 1}, 1., 0.)}, {contact}, 1);
     const auto     at_rest = moved(f, {});
     show(what, f, at_rest, at_rest);
+  }
+
+  /// The same ball as triangles, then two walls 0.3 thick that go along x through the top of the block: of one file,
+  /// with a node row between them, or over one.
+  void test_triangles()
+  {
+    const std::string ball = "intrusion_ball.stl", walls = "intrusion_walls.stl", sheet = "intrusion_sheet.stl";
+    const auto        both   = Stl::box(Point(0., 0., 0.), Point(0.3, 0.3, 1.), 2);
+    Stl::Triangles    pieces = both;
+    for (auto triangle : both)
+    {
+      for (Point &p : triangle)
+        p[1] += 0.5;
+      pieces.push_back(triangle);
+    }
+    const auto write = [&](const std::string &file, const Stl::Triangles &triangles)
+    {
+      if (root())
+        Stl::write_binary(file, triangles);
+      MPI_Barrier(MPI_COMM_WORLD);
+    };
+    write(ball, Stl::icosphere(3, 0.5));
+    write(walls, pieces);
+    write(sheet, Stl::plate(Point(-0.3, -0.3, 0.), Vector3({0., 0.6, 0.}), Vector3({0.6, 0., 0.}), 2)); // faces down
+    const auto test = [&](const std::string              &what,
+                          const std::string              &file,
+                          const Point                    &origin,
+                          const std::vector<std::string> &way,
+                          const std::string              &turn = "0")
+    { test_rigid(what, MasterSurfaceParameters::Shape::triangles, origin, way, turn, file); };
+    test("a ball of triangles comes down to 0.2", ball, Point(1, 1, 1.6), {"0", "0", "-0.3*t"});
+    test("a ball of triangles goes through the block", ball, Point(1, 1, 1.6), {"0", "0", "-2*t"});
+    test("a ball of triangles goes through it a thousand blocks far", ball, Point(1, 1, 1.6), {"0", "0", "-1000*t"});
+    test("a ball of triangles flies past above it", ball, Point(-5, 1, 1.6), {"10*t", "0", "0"});
+    test("two walls go through the top beside its nodes", walls, Point(-3, 1.1, 0.5), {"7*t", "0", "0"});
+    test("two walls go through the top over nodes", walls, Point(-3, 0.85, 0.5), {"7*t", "0", "0"});
+    test("a sheet comes down to 0.2 around a node", sheet, Point(1, 1, 1.1), {"0", "0", "-0.3*t"});
+    test("a sheet goes down beside nodes", sheet, Point(-0.4, 1, 1.1), {"0", "0", "-3*t"});
   }
 } // namespace
 
@@ -147,4 +194,5 @@ int main(int argc, char **argv)
   test_rigid("a cylinder goes through the block", Shape::cylinder, Point(1, 1, 1.6), {"0.1*t", "0.3*t", "-3*t"});
   test_rigid("a cylinder turns on the block", Shape::cylinder, Point(1, 1, 1.5), {"0", "0", "0"}, "170*t");
   test_rigid("a cylinder rolls over it", Shape::cylinder, Point(0.5, 1, 1.5), {"t", "0", "0"}, "360/3.14159265*t");
+  test_triangles();
 }

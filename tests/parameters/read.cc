@@ -107,6 +107,10 @@ namespace
     print("master axis", pair.master_surface.axis);
     print("master radius", pair.master_surface.radius);
     print("master cavity", pair.master_surface.cavity);
+    print("master file is none, or in the folder of the .prm file",
+          pair.master_surface.file.empty() || pair.master_surface.file == SOURCE_DIR "/press.stl");
+    print("master file", !pair.master_surface.file.empty());
+    print("master scale", pair.master_surface.scale);
     print("master", pair.master_surface.motion);
     print_choice("contact law", pair.contact_law);
     print_choice("friction law", pair.friction_law);

@@ -60,7 +60,7 @@ namespace Nodus
     std::vector<double>      rotation_centre;               ///< c, reference position; empty: what the owner says
   };
 
-  /// A rigid surface in closed form, its body on one side. Convex bodies, or a cavity around the slave.
+  /// A rigid surface in closed form or of triangles, its body on one side. Convex bodies, or a cavity around the slave.
   struct MasterSurfaceParameters
   {
     enum class Shape
@@ -69,14 +69,17 @@ namespace Nodus
       plane,
       sphere,
       cylinder,
-      paraboloid ///< of revolution, with the radius of curvature at its apex
+      paraboloid, ///< of revolution, with the radius of curvature at its apex
+      triangles   ///< of an STL file
     };
-    Shape                      shape = Shape::mesh;
-    Point                      point;          ///< of the plane, centre, on the axis of the cylinder, apex
-    Vector3                    axis;           ///< of the cylinder; outward normal of plane and apex
-    double                     radius = 0.;    ///< > 0 [length]
-    bool                       cavity = false; ///< the body is outside of sphere, cylinder, paraboloid
+    Shape   shape = Shape::mesh;
+    Point   point;          ///< of the plane, centre, on the axis of the cylinder, apex, file's origin
+    Vector3 axis;           ///< of the cylinder; outward normal of plane and apex
+    double  radius = 0.;    ///< > 0 [length]
+    bool    cavity = false; ///< the body is outside of sphere, cylinder, paraboloid; triangles: turned
     PrescribedMotionParameters motion;
+    std::string                file;       ///< of triangles; resolved against the folder of the .prm file
+    double                     scale = 1.; ///< > 0, factor on its coordinates
   };
 
   struct MaterialParameters

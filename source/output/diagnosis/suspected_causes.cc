@@ -147,7 +147,11 @@ namespace Nodus
                                         " of them were closed when the increment began, the first at (",
                                         pair.lost_X,
                                         "): they slid off the master or went through it"));
-        if (keys.has_rigid_master())
+        const bool triangles = keys.master_surface.shape == MasterSurfaceParameters::Shape::triangles;
+        if (triangles)
+          cause.evidence.push_back("the triangles of " + keys.master_surface.file +
+                                   " face away from the slave, which 'Master cavity' changes, or end at a rim");
+        else if (keys.has_rigid_master())
           cause.evidence.push_back("the rigid " + text_of(keys.master_surface.shape) +
                                    " has no end: its body is on the other side of the slave, or beyond its centre");
         else
@@ -155,7 +159,7 @@ namespace Nodus
                                    keys.search_distance > 0. ? text(keys.search_distance) : "0 (automatic)",
                                    text(4. * pair.reach),
                                    "master points farther away are found"});
-        if (pair.lost > 0 && !keys.has_rigid_master())
+        if (pair.lost > 0 && (triangles || !keys.has_rigid_master()))
           cause.changes.push_back({in_pair(p, "Projection tolerance"),
                                    text(keys.projection_tolerance),
                                    text(std::max(0.5, 2. * keys.projection_tolerance)),

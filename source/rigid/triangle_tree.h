@@ -1,0 +1,105 @@
+#ifndef nodus_rigid_triangle_tree_h
+#define nodus_rigid_triangle_tree_h
+
+#include <nodus/base/types.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+namespace Nodus
+{
+  /// A box along the axes.
+  struct TreeBox
+  {
+    std::array<double, dim> lower, upper;
+
+    TreeBox()
+    {
+      lower.fill(std::numeric_limits<double>::max());
+      upper.fill(-std::numeric_limits<double>::max());
+    }
+    void add(const Point &p)
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        lower[c] = std::min(lower[c], p[c]);
+        upper[c] = std::max(upper[c], p[c]);
+      }
+    }
+    void add(const TreeBox &box)
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        lower[c] = std::min(lower[c], box.lower[c]);
+        upper[c] = std::max(upper[c], box.upper[c]);
+      }
+    }
+    /// Squared distance of a point, 0 inside.
+    double squared_distance(const Point &p) const
+    {
+      double result = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        const double d = std::max({lower[c] - p[c], 0., p[c] - upper[c]});
+        result += d * d;
+      }
+      return result;
+    }
+  };
+
+  /// A balanced binary tree of boxes: what is nearest to a point is found without looking at what is farther, and
+  /// without allocating anything, as queries of an rtree do.
+  class TriangleTree
+  {
+  public:
+    /// @p boxes: of the things in the tree, by their numbers.
+    explicit TriangleTree(const std::vector<TreeBox> &boxes);
+
+    /// Calls visit(number, squared) for things whose boxes are nearer to @p p than the squared distance that it
+    /// returns, those in nearer boxes first; @p squared: what it may be at first.
+    template <typename Visit>
+    void nearest(const Point &p, double squared, const Visit &visit) const
+    {
+      std::array<std::pair<unsigned int, double>, 2 * most_levels> open; // nodes and how far they are
+      unsigned int                                                 n = 0;
+      open[n++]                                                      = {0, nodes_[0].box.squared_distance(p)};
+      while (n > 0)
+      {
+        const auto [at, distance] = open[--n];
+        if (distance >= squared)
+          continue;
+        const Node &node = nodes_[at];
+        if (node.n > 0)
+        {
+          for (unsigned int i = node.first; i < node.first + node.n; ++i)
+            squared = std::min(squared, visit(numbers_[i], squared));
+          continue;
+        }
+        const unsigned int child[2] = {at + 1, node.first};
+        const double       of[2] = {nodes_[child[0]].box.squared_distance(p), nodes_[child[1]].box.squared_distance(p)};
+        const unsigned int nearer = of[1] < of[0] ? 1 : 0;
+        open[n++]                 = {child[1 - nearer], of[1 - nearer]};
+        open[n++]                 = {child[nearer], of[nearer]};
+      }
+    }
+
+  private:
+    static constexpr unsigned int most_levels = 32; ///< halves of 2^32 things
+
+    /// Its first child is the next node; a leaf has things instead.
+    struct Node
+    {
+      TreeBox      box;
+      unsigned int first; ///< of the things of a leaf in numbers_, or the second child
+      unsigned int n = 0; ///< things of a leaf
+    };
+    void build(unsigned int first, unsigned int last, const std::vector<TreeBox> &boxes);
+
+    std::vector<Node>         nodes_;
+    std::vector<unsigned int> numbers_;
+  };
+} // namespace Nodus
+
+#endif
