@@ -1,0 +1,144 @@
+// Multigrid of MueLu on Tpetra matrices: the shared library libnodus_muelu.so.
+
+#include "solve/trilinos/outside_multigrid.h"
+
+#include <MueLu_CreateTpetraPreconditioner.hpp>
+#include <MueLu_TpetraOperator.hpp>
+#include <Teuchos_DefaultMpiComm.hpp>
+#include <Teuchos_ParameterList.hpp>
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Map.hpp>
+#include <Tpetra_MultiVector.hpp>
+
+#include <algorithm>
+#include <string>
+
+namespace Nodus
+{
+  namespace
+  {
+    using Teuchos::RCP;
+    using Teuchos::rcp;
+    using Map         = Tpetra::Map<>;
+    using Local       = Map::local_ordinal_type;
+    using Global      = Map::global_ordinal_type;
+    using Matrix      = Tpetra::CrsMatrix<double>;
+    using MultiVector = Tpetra::MultiVector<double>;
+    using Operator    = MueLu::TpetraOperator<double, Local, Global, Map::node_type>;
+
+    class MueLuMultigrid : public OutsideMultigrid
+    {
+    public:
+      explicit MueLuMultigrid(const unsigned int smoother_sweeps)
+          : smoother_sweeps_(smoother_sweeps)
+      {
+      }
+      void set_up(AssembledMatrix A, const std::vector<double> &modes) override;
+      void vmult(double *dst, const double *src) const override;
+
+    private:
+      void make_matrix();
+
+      const unsigned int       smoother_sweeps_;
+      AssembledMatrix          A_; ///< has the entries of matrix_
+      RCP<const Map>           rows_;
+      RCP<Matrix>              matrix_;
+      RCP<Operator>            muelu_;
+      mutable RCP<MultiVector> b_, x_;
+    };
+
+    double env(const char *name, double d)
+    {
+      return getenv(name) ? atof(getenv(name)) : d;
+    }
+
+    Teuchos::ParameterList settings(const int sweeps)
+    {
+      Teuchos::ParameterList list;
+      list.set("verbosity", getenv("MU_OUT") ? getenv("MU_OUT") : "none");
+      list.set("multigrid algorithm", "sa");
+      list.set("number of equations", 3);
+      list.set("problem: symmetric", true);
+      list.set("transpose: use implicit", env("MU_IMPLICIT", 1) > 0);
+      list.set("use kokkos refactor", env("MU_KOKKOS", 0) > 0);
+      list.set("aggregation: type", "uncoupled");
+      list.set("aggregation: drop tol", env("MU_DROP", 0.));
+      list.set("coarse: max size", int(env("MU_COARSE", 400)));
+      list.set("coarse: type", "KLU2");
+      const std::string      smoother = getenv("MU_SMOOTHER") ? getenv("MU_SMOOTHER") : "CHEBYSHEV";
+      Teuchos::ParameterList smoothing;
+      if (smoother == "CHEBYSHEV")
+      {
+        smoothing.set("chebyshev: degree", int(env("MU_SWEEPS", sweeps)));
+        smoothing.set("chebyshev: ratio eigenvalue", env("MU_RATIO", 20.));
+      }
+      else
+      {
+        smoothing.set("relaxation: type", "Symmetric Gauss-Seidel");
+        smoothing.set("relaxation: sweeps", int(env("MU_SWEEPS", 1)));
+      }
+      list.set("smoother: type", smoother);
+      list.set("smoother: params", smoothing);
+      list.set("reuse: type", getenv("MU_REUSE") ? getenv("MU_REUSE") : "tP");
+      return list;
+    }
+
+    void MueLuMultigrid::make_matrix()
+    {
+      const auto comm = rcp(new Teuchos::MpiComm<int>(Teuchos::opaqueWrapper(A_.communicator)));
+      rows_           = rcp(
+          new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), static_cast<size_t>(A_.n_owned), 0, comm));
+      const auto columns = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
+                                       std::vector<Global>(A_.unknowns.begin(), A_.unknowns.end()),
+                                       0,
+                                       comm));
+      using LocalMatrix  = Matrix::local_matrix_device_type;
+      using Start        = LocalMatrix::row_map_type::non_const_type;
+      using Column       = LocalMatrix::index_type::non_const_type;
+      using Value        = LocalMatrix::values_type::non_const_type;
+      matrix_            = rcp(new Matrix(rows_,
+                               columns,
+                               Start(A_.start.data(), A_.start.size()),
+                               Column(A_.column.data(), A_.column.size()),
+                               Value(A_.value.data(), A_.value.size())));
+      matrix_->expertStaticFillComplete(rows_, rows_);
+      b_ = rcp(new MultiVector(rows_, 1));
+      x_ = rcp(new MultiVector(rows_, 1));
+    }
+
+    void MueLuMultigrid::set_up(AssembledMatrix A, const std::vector<double> &modes)
+    {
+      int same = !muelu_.is_null() && A_.has_places_of(A) ? 1 : 0;
+      MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, A.communicator);
+      if (same && !getenv("MU_NOREUSE"))
+      {
+        std::copy(A.value.begin(), A.value.end(), A_.value.begin());
+        A = AssembledMatrix();
+        MueLu::ReuseTpetraPreconditioner(matrix_, *muelu_);
+        return;
+      }
+      muelu_  = Teuchos::null;
+      matrix_ = Teuchos::null;
+      A_      = std::move(A);
+      make_matrix();
+      const auto nullspace = rcp(new MultiVector(rows_, 6));
+      for (unsigned int mode = 0; mode < 6; ++mode)
+        std::copy_n(modes.data() + mode * A_.n_owned, A_.n_owned, nullspace->getDataNonConst(mode).get());
+      Teuchos::ParameterList list = settings(smoother_sweeps_);
+      list.sublist("user data").set("Nullspace", nullspace);
+      muelu_ = MueLu::CreateTpetraPreconditioner(RCP<Tpetra::Operator<double>>(matrix_), list);
+    }
+
+    void MueLuMultigrid::vmult(double *const dst, const double *const src) const
+    {
+      std::copy_n(src, A_.n_owned, b_->getDataNonConst(0).get());
+      muelu_->apply(*b_, *x_);
+      std::copy_n(x_->getData(0).get(), A_.n_owned, dst);
+    }
+  } // namespace
+} // namespace Nodus
+
+extern "C" Nodus::OutsideMultigrid *NODUS_OUTSIDE_MULTIGRID(const unsigned int smoother_sweeps)
+{
+  return new Nodus::MueLuMultigrid(smoother_sweeps);
+}
