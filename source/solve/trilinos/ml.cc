@@ -35,7 +35,7 @@ namespace Nodus
 
     private:
       void                   make_matrix();
-      void                   make_hierarchy();
+      bool                   same_places(const AssembledMatrix &A, double *&values) const;
       Teuchos::ParameterList settings();
 
       const unsigned int                                   smoother_sweeps_;
@@ -75,26 +75,39 @@ namespace Nodus
     void MLMultigrid::make_matrix()
     {
       communicator_ = std::make_unique<Epetra_MpiComm>(A_.communicator);
-      rows_         = std::make_unique<Epetra_Map>(-1LL, A_.n_owned, 0LL, *communicator_);
-      columns_      = std::make_unique<Epetra_Map>(
-          -1LL, static_cast<int>(A_.unknowns.size()), A_.unknowns.data(), 0LL, *communicator_);
+      rows_         = std::make_unique<Epetra_Map>(-1, A_.n_owned, 0, *communicator_);
+      const std::vector<int> unknowns(A_.unknowns.begin(), A_.unknowns.end()); // ML takes no larger numbers
+      columns_ = std::make_unique<Epetra_Map>(-1, int(unknowns.size()), unknowns.data(), 0, *communicator_);
       std::vector<int> entries(A_.n_owned);
       for (int i = 0; i < A_.n_owned; ++i)
         entries[i] = A_.start[i + 1] - A_.start[i];
-      matrix_ = std::make_unique<Epetra_CrsMatrix>(View, *rows_, *columns_, entries.data(), true);
+      matrix_ = std::make_unique<Epetra_CrsMatrix>(Copy, *rows_, *columns_, entries.data(), true);
       for (int i = 0; i < A_.n_owned; ++i)
         check(matrix_->InsertMyValues(i, entries[i], &A_.value[A_.start[i]], &A_.column[A_.start[i]]), "Epetra");
+      A_.value  = std::vector<double>();
+      A_.column = std::vector<int>();
+      A_.start  = std::vector<std::size_t>();
       check(matrix_->FillComplete(*rows_, *rows_), "Epetra");
       check(matrix_->OptimizeStorage(), "Epetra");
     }
 
+    /// Whether the entries of @p A on this rank are at the places of those of the matrix before, whose values it gets.
+    bool MLMultigrid::same_places(const AssembledMatrix &A, double *&values) const
+    {
+      int *start, *column;
+      return ml_ && matrix_->ExtractCrsDataPointers(start, column, values) == 0 && A.unknowns == A_.unknowns &&
+             A.n_owned == A_.n_owned && std::equal(A.start.begin(), A.start.end(), start) &&
+             std::equal(A.column.begin(), A.column.end(), column);
+    }
+
     void MLMultigrid::set_up(AssembledMatrix A, const std::vector<double> &modes)
     {
-      int same = ml_ && A_.has_places_of(A) ? 1 : 0;
+      double *values = nullptr;
+      int     same   = same_places(A, values) ? 1 : 0;
       MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, A.communicator);
       if (same && !getenv("ML_NOREUSE"))
       {
-        std::copy(A.value.begin(), A.value.end(), A_.value.begin());
+        std::copy(A.value.begin(), A.value.end(), values);
         A = AssembledMatrix();
         check(ml_->ReComputePreconditioner(), "ML");
         return;

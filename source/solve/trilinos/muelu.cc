@@ -38,9 +38,10 @@ namespace Nodus
 
     private:
       void make_matrix();
+      bool same_places(const AssembledMatrix &A) const;
 
       const unsigned int       smoother_sweeps_;
-      AssembledMatrix          A_; ///< has the entries of matrix_
+      AssembledMatrix          A_; ///< without its entries, which are in matrix_
       RCP<const Map>           rows_;
       RCP<Matrix>              matrix_;
       RCP<Operator>            muelu_;
@@ -83,6 +84,16 @@ namespace Nodus
       return list;
     }
 
+    /// What was in @p numbers, which give up their memory.
+    template <typename View, typename Number>
+    View taken(std::vector<Number> &numbers)
+    {
+      View view(Kokkos::view_alloc(Kokkos::WithoutInitializing, "nodus"), numbers.size());
+      std::copy(numbers.begin(), numbers.end(), view.data());
+      std::vector<Number>().swap(numbers);
+      return view;
+    }
+
     void MueLuMultigrid::make_matrix()
     {
       const auto comm = rcp(new Teuchos::MpiComm<int>(Teuchos::opaqueWrapper(A_.communicator)));
@@ -92,27 +103,33 @@ namespace Nodus
                                        std::vector<Global>(A_.unknowns.begin(), A_.unknowns.end()),
                                        0,
                                        comm));
-      using LocalMatrix  = Matrix::local_matrix_device_type;
-      using Start        = LocalMatrix::row_map_type::non_const_type;
-      using Column       = LocalMatrix::index_type::non_const_type;
-      using Value        = LocalMatrix::values_type::non_const_type;
-      matrix_            = rcp(new Matrix(rows_,
+      using LocalMatrix = Matrix::local_matrix_device_type;
+      matrix_           = rcp(new Matrix(rows_,
                                columns,
-                               Start(A_.start.data(), A_.start.size()),
-                               Column(A_.column.data(), A_.column.size()),
-                               Value(A_.value.data(), A_.value.size())));
+                               taken<LocalMatrix::row_map_type::non_const_type>(A_.start),
+                               taken<LocalMatrix::index_type::non_const_type>(A_.column),
+                               taken<LocalMatrix::values_type::non_const_type>(A_.value)));
       matrix_->expertStaticFillComplete(rows_, rows_);
       b_ = rcp(new MultiVector(rows_, 1));
       x_ = rcp(new MultiVector(rows_, 1));
     }
 
+    bool MueLuMultigrid::same_places(const AssembledMatrix &A) const
+    {
+      const auto graph = matrix_->getLocalMatrixHost().graph;
+      return A.unknowns == A_.unknowns && A.start.size() == graph.row_map.size() &&
+             A.column.size() == graph.entries.size() &&
+             std::equal(A.start.begin(), A.start.end(), graph.row_map.data()) &&
+             std::equal(A.column.begin(), A.column.end(), graph.entries.data());
+    }
+
     void MueLuMultigrid::set_up(AssembledMatrix A, const std::vector<double> &modes)
     {
-      int same = !muelu_.is_null() && A_.has_places_of(A) ? 1 : 0;
+      int same = !muelu_.is_null() && same_places(A) ? 1 : 0;
       MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, A.communicator);
       if (same && !getenv("MU_NOREUSE"))
       {
-        std::copy(A.value.begin(), A.value.end(), A_.value.begin());
+        std::copy(A.value.begin(), A.value.end(), matrix_->getLocalMatrixHost().values.data());
         A = AssembledMatrix();
         MueLu::ReuseTpetraPreconditioner(matrix_, *muelu_);
         return;
