@@ -53,11 +53,29 @@ namespace Nodus
       }
       void set_up(const BlockCsrMatrix &K, Constraints constraints, std::vector<double> modes) override
       {
-        named([&] { multigrid_->set_up(assemble(K, constraints), modes); });
+        AssembledMatrix A    = assemble(K, constraints);
+        const MPI_Comm  comm = A.communicator;
+        std::string     problem; // what libraries throw is a failure of the linear solver like others, of all ranks
+        try
+        {
+          multigrid_->set_up(std::move(A), modes);
+        }
+        catch (const std::exception &error)
+        {
+          problem = advice(error);
+        }
+        throw_everywhere<SolverFailure>(problem, comm, SolverFailure::Kind::linear_solver);
       }
       void vmult(Vector &dst, const Vector &src) const override
       {
-        named([&] { multigrid_->vmult(dst.begin(), src.begin()); });
+        try
+        {
+          multigrid_->vmult(dst.begin(), src.begin());
+        }
+        catch (const std::exception &error)
+        {
+          throw SolverFailure(advice(error), SolverFailure::Kind::linear_solver);
+        }
       }
       /// Aggregates are kept where the next matrix has its entries at the same places.
       void release() override
@@ -65,19 +83,9 @@ namespace Nodus
       }
 
     private:
-      /// What libraries throw is a failure of the linear solver like others.
-      template <typename Work>
-      void named(const Work &work) const
+      std::string advice(const std::exception &error) const
       {
-        try
-        {
-          work();
-        }
-        catch (const std::exception &error)
-        {
-          throw SolverFailure(text_of(choice_) + ": " + error.what() + "; use 'Preconditioner = nodus'.",
-                              SolverFailure::Kind::linear_solver);
-        }
+        return text_of(choice_) + ": " + error.what() + "; use 'Preconditioner = nodus'.";
       }
 
       const Choice                            choice_;

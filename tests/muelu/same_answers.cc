@@ -6,5 +6,5 @@
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  SameAnswers::check(SameAnswers::Preconditioner::muelu);
+  SameAnswers::compare(SameAnswers::Preconditioner::muelu);
 }

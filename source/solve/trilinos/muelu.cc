@@ -11,6 +11,7 @@
 #include <Tpetra_MultiVector.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace Nodus
@@ -37,8 +38,9 @@ namespace Nodus
       void vmult(double *dst, const double *src) const override;
 
     private:
-      void make_matrix();
-      bool same_places(const AssembledMatrix &A) const;
+      void             make_matrix();
+      bool             same_places(const AssembledMatrix &A) const;
+      RCP<MultiVector> make_nullspace(const std::vector<double> &modes) const;
 
       const unsigned int       smoother_sweeps_;
       AssembledMatrix          A_; ///< without its entries, which are in matrix_
@@ -65,12 +67,16 @@ namespace Nodus
       list.set("aggregation: type", "uncoupled");
       list.set("aggregation: drop tol", env("MU_DROP", 0.));
       list.set("coarse: max size", int(env("MU_COARSE", 400)));
-      list.set("coarse: type", "KLU2");
+      list.set("coarse: type", getenv("MU_CT") ? getenv("MU_CT") : "KLU2");
+      if (getenv("MU_SAEIG"))
+        list.set("sa: eigenvalue estimate num iterations", int(env("MU_SAEIG", 10)));
       const std::string      smoother = getenv("MU_SMOOTHER") ? getenv("MU_SMOOTHER") : "CHEBYSHEV";
       Teuchos::ParameterList smoothing;
       if (smoother == "CHEBYSHEV")
       {
         smoothing.set("chebyshev: degree", int(env("MU_SWEEPS", sweeps)));
+        smoothing.set("chebyshev: eigenvalue max iterations", int(env("MU_EIGIT", 10)));
+        smoothing.set("chebyshev: boost factor", env("MU_BOOST", 1.1));
         smoothing.set("chebyshev: ratio eigenvalue", env("MU_RATIO", 20.));
       }
       else
@@ -103,8 +109,8 @@ namespace Nodus
                                        std::vector<Global>(A_.unknowns.begin(), A_.unknowns.end()),
                                        0,
                                        comm));
-      using LocalMatrix = Matrix::local_matrix_device_type;
-      matrix_           = rcp(new Matrix(rows_,
+      using LocalMatrix  = Matrix::local_matrix_device_type;
+      matrix_            = rcp(new Matrix(rows_,
                                columns,
                                taken<LocalMatrix::row_map_type::non_const_type>(A_.start),
                                taken<LocalMatrix::index_type::non_const_type>(A_.column),
@@ -123,6 +129,26 @@ namespace Nodus
              std::equal(A.column.begin(), A.column.end(), graph.entries.data());
     }
 
+    /// Modes vanish in what is held, and MueLu refuses aggregates in which one of them vanishes: small numbers there.
+    RCP<MultiVector> MueLuMultigrid::make_nullspace(const std::vector<double> &modes) const
+    {
+      constexpr unsigned int n_modes   = 6;
+      constexpr double       small     = 1e-5;
+      const int              n         = A_.n_owned;
+      const auto             nullspace = rcp(new MultiVector(rows_, n_modes));
+      std::vector<char>      held(n, 1);
+      for (unsigned int mode = 0; mode < n_modes; ++mode)
+        for (int i = 0; i < n; ++i)
+          held[i] = held[i] && modes[mode * n + i] == 0.;
+      for (unsigned int mode = 0; mode < n_modes; ++mode)
+      {
+        const auto column = nullspace->getDataNonConst(mode);
+        for (int i = 0; i < n; ++i)
+          column[i] = held[i] ? small * std::cos((mode + 1.) * A_.unknowns[i]) : modes[mode * n + i];
+      }
+      return nullspace;
+    }
+
     void MueLuMultigrid::set_up(AssembledMatrix A, const std::vector<double> &modes)
     {
       int same = !muelu_.is_null() && same_places(A) ? 1 : 0;
@@ -138,10 +164,8 @@ namespace Nodus
       matrix_ = Teuchos::null;
       A_      = std::move(A);
       make_matrix();
-      const auto nullspace = rcp(new MultiVector(rows_, 6));
-      for (unsigned int mode = 0; mode < 6; ++mode)
-        std::copy_n(modes.data() + mode * A_.n_owned, A_.n_owned, nullspace->getDataNonConst(mode).get());
-      Teuchos::ParameterList list = settings(smoother_sweeps_);
+      const RCP<MultiVector> nullspace = make_nullspace(modes);
+      Teuchos::ParameterList list      = settings(smoother_sweeps_);
       list.sublist("user data").set("Nullspace", nullspace);
       muelu_ = MueLu::CreateTpetraPreconditioner(RCP<Tpetra::Operator<double>>(matrix_), list);
     }
