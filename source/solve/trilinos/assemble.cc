@@ -206,12 +206,17 @@ namespace Nodus
         added_.erase(found);
       }
       std::sort(local_row_.begin(), local_row_.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
+      // prescribed displacements and those that contact eliminates have rows and columns of zeros
+      bool held[dim];
+      for (unsigned int a = 0; a < dim; ++a)
+        held[a] = std::all_of(local_row_.begin(),
+                              local_row_.end(),
+                              [&](const auto &entry) { return entry.first == node || entry.second.row(a).isZero(0.); });
       for (unsigned int a = 0; a < dim; ++a)
       {
         for (const auto &[c, block] : local_row_)
-          // prescribed displacements and those that contact eliminates have rows and columns of zeros
           for (unsigned int b = 0; b < dim; ++b)
-            if ((c == node && a == b) || !(block.row(a).isZero(0.) || block.col(b).isZero(0.)))
+            if (c == node ? a == b || !(held[a] || held[b]) : !(block.row(a).isZero(0.) || block.col(b).isZero(0.)))
             {
               matrix.column.push_back(dim * c + b);
               matrix.value.push_back(block(a, b));
