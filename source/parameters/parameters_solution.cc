@@ -34,6 +34,11 @@ namespace Nodus
                                                               {LinearSolverParameters::Type::block, "block"},
                                                               {LinearSolverParameters::Type::condensed, "condensed"}};
 
+    const Names<LinearSolverParameters::Preconditioner> preconditioner_names = {
+        {LinearSolverParameters::Preconditioner::nodus, "nodus"},
+        {LinearSolverParameters::Preconditioner::ml, "ML"},
+        {LinearSolverParameters::Preconditioner::muelu, "MueLu"}};
+
     const Names<AdaptivityParameters::Indicator> indicator_names = {
         {AdaptivityParameters::Indicator::stress_and_contact, "stress and contact"}};
 
@@ -108,6 +113,13 @@ namespace Nodus
                         solver.augmentation_factor,
                         "Block solver: weight of the constraints in units of the diagonal of the stiffness [-].",
                         not_negative);
+      add_choice(prm,
+                 "Preconditioner",
+                 solver.preconditioner,
+                 preconditioner_names,
+                 "Block and condensed solver: algebraic multigrid on the displacements [-]: nodus's own, or that of "
+                 "Trilinos, where nodus was built with it: ML on Epetra matrices, MueLu on Tpetra matrices. Answers "
+                 "are the same; what each costs is in contrib/studies/scaling/preconditioners.md.");
     }
 
     void add(ParameterHandler &prm, StrategyParameters &strategy)
@@ -276,5 +288,10 @@ namespace Nodus
   std::string text_of(const LinearSolverParameters::Type type)
   {
     return text_of(type, solver_names);
+  }
+
+  std::string text_of(const LinearSolverParameters::Preconditioner preconditioner)
+  {
+    return text_of(preconditioner, preconditioner_names);
   }
 } // namespace Nodus

@@ -3,6 +3,7 @@
 #include "parallel/throw_everywhere.h"
 #include "run/load_path.h"
 #include "run/validation.h"
+#include "solve/displacement_preconditioner.h"
 #include <nodus/base/signals.h>
 #include <nodus/run/contact_problem.h>
 
@@ -200,8 +201,9 @@ namespace Nodus
   }
 
   ContactProblem::ContactProblem(const Parameters &parameters, MPI_Comm communicator, std::ostream &log)
-      : implementation_(std::make_unique<Implementation>(parameters, communicator, log))
   {
+    require_preconditioner(parameters.linear_solver.preconditioner, communicator); // before meshes are read
+    implementation_ = std::make_unique<Implementation>(parameters, communicator, log);
   }
 
   ContactProblem::~ContactProblem() = default;

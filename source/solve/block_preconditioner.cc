@@ -1,4 +1,5 @@
 #include "solve/block_preconditioner.h"
+#include "solve/multigrid/multigrid.h"
 
 #include <Eigen/Dense>
 
@@ -13,18 +14,17 @@ namespace Nodus
     using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   }
 
-  BlockPreconditioner::BlockPreconditioner(const SaddlePointOperator &system,
-                                           const double               augmentation_factor,
-                                           const std::vector<Point>  &node_positions)
+  BlockPreconditioner::BlockPreconditioner(const SaddlePointOperator  &system,
+                                           const double                augmentation_factor,
+                                           const std::vector<Point>   &node_positions,
+                                           DisplacementPreconditioner &multigrid)
       : system_(system)
+      , multigrid_(multigrid)
       , multiplier_part_(3 * system.slave_nodes().size())
   {
     augmented_rhs_.reinit(system.displacement_ownership().owned(), system.bulk().map().communicator());
     make_multiplier_blocks(augmentation_factor);
-    make_augmented_matrix();
-    // three sweeps pay off against the stiff couplings of the augmentation
-    multigrid_ =
-        std::make_unique<Multigrid>(system.bulk(), *augmented_, rigid_body_modes(system.bulk(), node_positions), 3);
+    multigrid_.set_up(system.bulk(), augmentation(), rigid_body_modes(system.bulk(), node_positions));
   }
 
   void BlockPreconditioner::make_multiplier_blocks(const double augmentation_factor)
@@ -57,7 +57,8 @@ namespace Nodus
     }
   }
 
-  void BlockPreconditioner::make_augmented_matrix()
+  /// B^T D^-1 B, and friction.
+  Constraints BlockPreconditioner::augmentation() const
   {
     const CouplingMatrix &B = system_.B();
     Constraints           constraints;
@@ -88,7 +89,7 @@ namespace Nodus
         Eigen::Map<Block>(spring.row.emplace_back(other, std::array<double, 9>()).second.data()) = block;
       constraints.springs.push_back(std::move(spring));
     }
-    augmented_ = std::make_unique<ConstrainedMatrix>(system_.bulk(), std::move(constraints));
+    return constraints;
   }
 
   void BlockPreconditioner::apply_multiplier_blocks(double *const m) const
@@ -108,7 +109,7 @@ namespace Nodus
     augmented_rhs_ = src.block(0);
     system_.B().add_transposed_product(multiplier_part_.data(), augmented_rhs_.begin());
 
-    multigrid_->vmult(dst.block(0), augmented_rhs_);
+    multigrid_.vmult(dst.block(0), augmented_rhs_);
 
     double *const m = dst.block(1).begin();
     for (std::size_t i = 0; i < multiplier_part_.size(); ++i)

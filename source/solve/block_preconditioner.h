@@ -1,14 +1,12 @@
 #ifndef nodus_solve_block_preconditioner_h
 #define nodus_solve_block_preconditioner_h
 
-#include "solve/constrained_matrix.h"
-#include "solve/multigrid/multigrid.h"
+#include "solve/displacement_preconditioner.h"
 #include "solve/saddle_point_operator.h"
 
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <array>
-#include <memory>
 #include <vector>
 
 namespace Nodus
@@ -24,24 +22,30 @@ namespace Nodus
   class BlockPreconditioner
   {
   public:
-    /// Keeps a reference to @p system. Collective.
-    BlockPreconditioner(const SaddlePointOperator &system,
-                        double                     augmentation_factor,
-                        const std::vector<Point>  &node_positions);
+    /// Keeps references to @p system and @p multigrid, which it sets up. Collective.
+    BlockPreconditioner(const SaddlePointOperator  &system,
+                        double                      augmentation_factor,
+                        const std::vector<Point>   &node_positions,
+                        DisplacementPreconditioner &multigrid);
+    BlockPreconditioner(const BlockPreconditioner &)            = delete;
+    BlockPreconditioner &operator=(const BlockPreconditioner &) = delete;
+    ~BlockPreconditioner()
+    {
+      multigrid_.release();
+    }
 
     void vmult(BlockVector &dst, const BlockVector &src) const;
 
   private:
-    void make_multiplier_blocks(double augmentation_factor);
-    void make_augmented_matrix();
+    void        make_multiplier_blocks(double augmentation_factor);
+    Constraints augmentation() const;
 
     /// D^-1 times @p m, in place.
     void apply_multiplier_blocks(double *m) const;
 
     const SaddlePointOperator         &system_;
+    DisplacementPreconditioner        &multigrid_;
     std::vector<std::array<double, 9>> D_inverse_; ///< per owned slave node, row by row
-    std::unique_ptr<ConstrainedMatrix> augmented_;
-    std::unique_ptr<Multigrid>         multigrid_;
     mutable Vector                     augmented_rhs_;
     mutable std::vector<double>        multiplier_part_;
   };

@@ -12,6 +12,8 @@ namespace Nodus
   BlockSolver::BlockSolver(const LinearSolverParameters &parameters, const std::vector<Point> &node_positions)
       : parameters_(parameters)
       , node_positions_(node_positions)
+      // three sweeps pay off against the stiff couplings of the augmentation
+      , multigrid_(make_displacement_preconditioner(parameters.preconditioner, 3))
   {
   }
 
@@ -28,8 +30,8 @@ namespace Nodus
       if (!preconditioner)
       {
         const auto timer = time_set_up();
-        preconditioner =
-            std::make_unique<const BlockPreconditioner>(matrix, parameters_.augmentation_factor, node_positions_);
+        preconditioner   = std::make_unique<const BlockPreconditioner>(
+            matrix, parameters_.augmentation_factor, node_positions_, *multigrid_);
       }
       const KrylovReport krylov = left_gmres(
           matrix,

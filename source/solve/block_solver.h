@@ -1,7 +1,10 @@
 #ifndef nodus_solve_block_solver_h
 #define nodus_solve_block_solver_h
 
-#include "solve/linear_solver.h"
+#include "solve/displacement_preconditioner.h"
+
+#include <memory>
+#include <vector>
 
 namespace Nodus
 {
@@ -18,8 +21,9 @@ namespace Nodus
                  double                                  relative_tolerance) override;
 
   private:
-    const LinearSolverParameters parameters_;
-    const std::vector<Point>     node_positions_;
+    const LinearSolverParameters                      parameters_;
+    const std::vector<Point>                          node_positions_;
+    const std::unique_ptr<DisplacementPreconditioner> multigrid_;
   };
 } // namespace Nodus
 

@@ -2,6 +2,7 @@
 #include "solve/block_solver.h"
 #include "solve/condensation.h"
 #include "solve/left_gmres.h"
+#include "solve/multigrid/multigrid.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/solver_cg.h>
@@ -25,7 +26,7 @@ namespace Nodus
     class CondensedCycle
     {
     public:
-      CondensedCycle(Condensation &condensation, const Multigrid &multigrid, const BlockVector &b)
+      CondensedCycle(Condensation &condensation, const DisplacementPreconditioner &multigrid, const BlockVector &b)
           : condensation_(condensation)
           , multigrid_(multigrid)
           , rhs_(b.block(0))
@@ -40,9 +41,9 @@ namespace Nodus
       }
 
     private:
-      Condensation    &condensation_;
-      const Multigrid &multigrid_;
-      mutable Vector   rhs_, y_;
+      Condensation                     &condensation_;
+      const DisplacementPreconditioner &multigrid_;
+      mutable Vector                    rhs_, y_;
     };
 
     [[noreturn]] void fail(const double residual, const unsigned int iterations, const double tolerance)
@@ -57,25 +58,26 @@ namespace Nodus
   CondensedSolver::CondensedSolver(const LinearSolverParameters &parameters, const std::vector<Point> &node_positions)
       : parameters_(parameters)
       , node_positions_(node_positions)
+      , multigrid_(make_displacement_preconditioner(parameters.preconditioner, 2))
   {
   }
 
   void CondensedSolver::make_multigrid(const LinearSystem &system, const Condensation &condensation)
   {
     const auto timer = time_set_up();
-    multigrid_.reset(); // refers to the matrix
-    matrix_.reset();    // before the next one takes as much memory
-    matrix_                   = std::make_unique<ConstrainedMatrix>(system.bulk, condensation.constraints());
+    set_up_          = false;
+    multigrid_->release(); // before the modes take memory
     std::vector<double> modes = rigid_body_modes(system.bulk, node_positions_);
     condensation.transform_modes(modes);
-    multigrid_        = std::make_unique<Multigrid>(system.bulk, *matrix_, std::move(modes), 2);
+    multigrid_->set_up(system.bulk, condensation.constraints(), std::move(modes));
+    set_up_           = true;
     signature_        = condensation.signature();
     first_iterations_ = last_iterations_ = 0.;
   }
 
   bool CondensedSolver::hierarchy_fits(const std::vector<char> &signature, const MPI_Comm communicator) const
   {
-    if (!multigrid_ || last_iterations_ > growth * first_iterations_ + 0.6)
+    if (!set_up_ || last_iterations_ > growth * first_iterations_ + 0.6)
       return false;
     unsigned int changed = 0;
     for (unsigned int k = 0; k < signature.size(); ++k)
@@ -163,9 +165,10 @@ namespace Nodus
     }
     catch (const NotCondensable &)
     {
-      BlockSolver block_solver(parameters_, node_positions_);
-      block_solver.set_profile(profile_);
-      return block_solver.solve(system, rhs, solutions, relative_tolerance);
+      if (!block_solver_)
+        block_solver_ = std::make_unique<BlockSolver>(parameters_, node_positions_);
+      block_solver_->set_profile(profile_);
+      return block_solver_->solve(system, rhs, solutions, relative_tolerance);
     }
     bool       first  = true; // of the right-hand sides that are not zero
     const auto find_x = [&](const BlockVector &b, BlockVector &x)

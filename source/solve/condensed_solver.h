@@ -1,9 +1,7 @@
 #ifndef nodus_solve_condensed_solver_h
 #define nodus_solve_condensed_solver_h
 
-#include "solve/constrained_matrix.h"
-#include "solve/linear_solver.h"
-#include "solve/multigrid/multigrid.h"
+#include "solve/displacement_preconditioner.h"
 
 #include <memory>
 #include <vector>
@@ -49,12 +47,13 @@ namespace Nodus
                        double                     tolerance,
                        BlockVector               &x) const;
 
-    const LinearSolverParameters       parameters_;
-    const std::vector<Point>           node_positions_;
-    std::unique_ptr<ConstrainedMatrix> matrix_;
-    std::unique_ptr<Multigrid>         multigrid_;
-    std::vector<char>                  signature_;        ///< of the system that the hierarchy was made for
-    double first_iterations_ = 0., last_iterations_ = 0.; ///< with this hierarchy, per digit
+    const LinearSolverParameters                      parameters_;
+    const std::vector<Point>                          node_positions_;
+    const std::unique_ptr<DisplacementPreconditioner> multigrid_;
+    bool                                              set_up_ = false; ///< multigrid_ is
+    std::vector<char>                                 signature_; ///< of the system that the hierarchy was made for
+    double                        first_iterations_ = 0., last_iterations_ = 0.; ///< with this hierarchy, per digit
+    std::unique_ptr<LinearSolver> block_solver_;                                 ///< once it was needed
   };
 } // namespace Nodus
 

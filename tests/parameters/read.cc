@@ -204,6 +204,7 @@ namespace
     print("tolerance", parameters.linear_solver.tolerance);
     print("maximum iterations", parameters.linear_solver.maximum_iterations);
     print("augmentation factor", parameters.linear_solver.augmentation_factor);
+    print_choice("preconditioner", parameters.linear_solver.preconditioner);
     print("\nwithout", parameters.strategy.without);
     print("uses mixed geometry", parameters.strategy.uses(Remedy::mixed_geometry));
     print("uses three loops", parameters.strategy.uses(Remedy::three_loops));

@@ -1,7 +1,9 @@
 // The parts of multigrid against products with T^T K T + R^T D R + d from global vectors: prolongation of the modes,
-// P^T A P, and the symmetry of the cycle. Prolongation and smoother are in single precision.
+// P^T A P, and the symmetry of the cycle. Prolongation and smoother are in single precision. Also that matrix entry by
+// entry, as other libraries get it.
 
 #include "solve/multigrid/multigrid.h"
+#include "solve/trilinos/assemble.h"
 
 #include "model_problem.h"
 
@@ -97,6 +99,8 @@ namespace
       report("product in single precision", distance(y, Ax), 1e-6);
       report("the argument is what it was", distance(x, before), 0.);
 
+      check_assembled(before, Ax);
+
       const std::vector<std::array<double, 9>> blocks      = A.diagonal_blocks(K);
       double                                   worst_block = 0.;
       for (const DoFIndex node : tried_nodes())
@@ -166,6 +170,31 @@ namespace
     }
 
   private:
+    void check_assembled(const std::vector<double> &x, const std::vector<double> &Ax)
+    {
+      const AssembledMatrix     assembled = assemble(K, constraints.on_rank(K, displacements));
+      const std::vector<double> all       = everywhere(x);
+      std::vector<double>       y(n, 0.);
+      bool                      ascending = true, alone = true;
+      for (unsigned int i = 0; i < n; ++i)
+        for (std::size_t k = assembled.start[i]; k < assembled.start[i + 1]; ++k)
+        {
+          y[i] += assembled.value[k] * all[assembled.unknowns[assembled.column[k]]];
+          ascending = ascending && (k == assembled.start[i] || assembled.column[k - 1] < assembled.column[k]);
+        }
+      report("assembled entry by entry", distance(y, Ax), 1e-14);
+      for (const auto &[dof, value] : constraints.diagonal)
+        if (dof >= displacements.begin() && dof < displacements.end())
+          alone = alone &&
+                  assembled.start[dof - displacements.begin() + 1] == assembled.start[dof - displacements.begin()] + 1;
+      const std::vector<DoFIndex> reached = tried_nodes(); // by T and R
+      for (unsigned int i = 0; i < n; ++i)
+        if (K.decoupled(i) && std::find(reached.begin(), reached.end(), K.map().global(i / dim)) == reached.end())
+          alone = alone && assembled.start[i + 1] == assembled.start[i] + 1;
+      const bool everywhere_so = dealii::Utilities::MPI::min(ascending && alone ? 1 : 0, MPI_COMM_WORLD) == 1;
+      out << "columns ascend, and what is held has its diagonal alone: " << yes(everywhere_so) << std::endl;
+    }
+
     static const char *yes(const bool condition)
     {
       return condition ? "yes" : "NO";

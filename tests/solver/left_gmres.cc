@@ -39,7 +39,8 @@ int main(int argc, char **argv)
   make_linear_solver(LinearSolverParameters(), problem.layout, problem.node_positions)
       ->solve(problem.system, reference);
 
-  const BlockPreconditioner preconditioner(A, 3., problem.node_positions);
+  const auto                amg = make_displacement_preconditioner(LinearSolverParameters::Preconditioner::nodus, 3);
+  const BlockPreconditioner preconditioner(A, 3., problem.node_positions, *amg);
   const auto                multigrid = [&](BlockVector &z, const BlockVector &r) { preconditioner.vmult(z, r); };
   for (const double tolerance : {1e-4, 1e-8, 1e-13})
   {

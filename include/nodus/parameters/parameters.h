@@ -392,6 +392,7 @@ namespace Nodus
   std::string text_of(PressureGapParameters::Law law);
   std::string text_of(LoopParameters::Mode mode);
   std::string text_of(LinearSolverParameters::Type type);
+  std::string text_of(LinearSolverParameters::Preconditioner preconditioner);
 } // namespace Nodus
 
 #endif

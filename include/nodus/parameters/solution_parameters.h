@@ -45,10 +45,18 @@ namespace Nodus
       block,
       condensed
     };
-    Type         type                = Type::direct;
-    double       tolerance           = 1e-10; ///< block, condensed: relative residual
-    unsigned int maximum_iterations  = 500;   ///< block, condensed: Krylov iterations
-    double       augmentation_factor = 2.;    ///< block: gamma, in units of the diagonal of the stiffness
+    /// Multigrid on the displacements; the others are libraries that the program opens when they are asked for.
+    enum class Preconditioner
+    {
+      nodus,
+      ml,
+      muelu
+    };
+    Type           type                = Type::direct;
+    double         tolerance           = 1e-10; ///< block, condensed: relative residual
+    unsigned int   maximum_iterations  = 500;   ///< block, condensed: Krylov iterations
+    double         augmentation_factor = 2.;    ///< block: gamma, in units of the diagonal of the stiffness
+    Preconditioner preconditioner      = Preconditioner::nodus; ///< block, condensed
   };
 
   /// What is tried where something fails.
