@@ -232,7 +232,7 @@ namespace Nodus
                       "Plug-ins [-], separated by ',', relative to the folder of the .prm file: shared libraries that "
                       "bring laws and indicators of one's own, whose names and keys nodus knows from then on (see "
                       "plugins.md).",
-                      anything_separated_by(","));
+                      Patterns::List(Patterns::FileName(), 0, Patterns::List::max_int_value, ","));
     prm.enter_subsection("Discretization");
     prm.add_parameter("Degree", degree, "Polynomial degree of the displacement [-].", Patterns::Integer(1, 2));
     prm.leave_subsection();

@@ -36,6 +36,28 @@ def test_reference():
     check("generators", len(PROGRAM.reference.generators), len(re.findall(r"^\| [a-zA-Z_]+ \| .* \| `.*` \|$", page, re.M)))
 
 
+def test_plug_ins():
+    """Keys of a plug-in are known once it is loaded; what is wrong with one is said at the line that sets it."""
+    folder = os.path.join(os.path.dirname(NODUS), "tests", "plugins")
+    library = os.path.relpath(os.path.join(folder, "libkirchhoff.so"))
+    case = nodus.Case(program=PROGRAM)
+    modulus = "Body 1/Material/Kirchhoff with moduli/Shear modulus"
+    refused("unknown key or section 'Kirchhoff with moduli' in 'Body 1/Material'", case.__setitem__, modulus, 4)
+    case["Additional shared libraries"] = [library]
+    case[modulus] = 4
+    case["Body 1/Material/Law"] = "Kirchhoff with moduli"
+    check("unit of its key", case.reference[modulus].unit, "pressure")
+    os.makedirs("below", exist_ok=True)
+    case.write("below/plug_in.prm")
+    again = nodus.Case.read("below/plug_in.prm", program=PROGRAM)
+    check("its key in a file elsewhere", again[modulus], 4.)
+    check("in a copy", again.copy()[modulus], 4.)
+    check("a case without it does not know the key", "Kirchhoff with moduli" in repr(nodus.Case(program=PROGRAM).explain("Law")), False)
+    for name, words in (("nowhere.so", "nowhere.so"), (os.path.join(folder, "libnothing.so"), "libnothing.so")):
+        refused(words, nodus.Case(program=PROGRAM).__setitem__, "Additional shared libraries", name)
+    check("the plug-in's own case", nodus.Case.read(os.path.join(folder, "block.prm"), program=PROGRAM)["Load stepping/Increments"], (4,))
+
+
 def test_program():
     """By argument, by NODUS, in PATH."""
     os.symlink(NODUS, "nodus")
@@ -192,4 +214,4 @@ def dict_of(case, folder):
     return nodus.prm.parse(case.text(folder))
 
 
-run(test_reference, test_program, test_errors_at_the_line, test_values, test_verdict_of_the_program, test_files)
+run(test_reference, test_plug_ins, test_program, test_errors_at_the_line, test_values, test_verdict_of_the_program, test_files)

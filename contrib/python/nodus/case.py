@@ -11,7 +11,7 @@ import numpy as np
 from . import prm
 from .errors import InputError
 from .html import table
-from .program import Program
+from .program import LIBRARIES, Program
 
 
 def _kept(value):
@@ -63,6 +63,8 @@ class Section(MutableMapping):
             value = _kept(value)
         holder, last = self._holder(full, create=True)
         holder[last] = value
+        if full == LIBRARIES:
+            self._case._load()
 
     def __contains__(self, name):
         """Whether a key or anything in a section is set."""
@@ -75,6 +77,8 @@ class Section(MutableMapping):
         if not holder or last not in holder:
             raise KeyError(f"'{full}' is not set")
         del holder[last]
+        if full == LIBRARIES:
+            self._case._load()
 
     def _names(self):
         holder, last = self._holder(self._path) if self._path else ({"": self._case._tree}, "")
@@ -112,7 +116,8 @@ class Case(Section):
         case["Body 1/Material/Young's modulus"] = 1000
 
     Units are the user's, N, mm and MPa or any other that are consistent: nothing is converted. Files that a key names are
-    relative to the working folder, those of a case that was read to its file."""
+    relative to the working folder, those of a case that was read to its file. Laws and keys of plug-ins are known once
+    `Additional shared libraries` is set."""
 
     def __init__(self, title=None, *, program=None):
         """program: path of nodus or a Program; without: see Program. @throws InputError where there is none"""
@@ -128,6 +133,7 @@ class Case(Section):
         """The case of a .prm or .json file. @throws InputError"""
         case = cls(program=program)
         case._folder = os.path.dirname(os.path.abspath(path))
+        tree = prm.read(path)
 
         def values(tree, section):
             for name, value in tree.items():
@@ -137,7 +143,9 @@ class Case(Section):
                              case.reference[full].value(value) if isinstance(value, str) else value)
 
         try:
-            case.update(values(prm.read(path), ""))
+            if LIBRARIES in tree:  # first: other keys are theirs
+                case[LIBRARIES] = tree.pop(LIBRARIES)
+            case.update(values(tree, ""))
         except InputError as error:
             raise InputError(str(error) if str(error).startswith(str(path)) else f"{path}: {error}") from None
         return case
@@ -145,9 +153,18 @@ class Case(Section):
     def copy(self):
         """A case of its own with the same keys."""
         case = Case(program=self.program)
+        case._folder, case.reference = self._folder, self.reference
         case.update(self._tree)
-        case._folder = self._folder
         return case
+
+    def _load(self):
+        """Knows the keys of the plug-ins that are set from here on."""
+        names = self.reference[LIBRARIES].text(self._tree.get(LIBRARIES, ())).split(",")
+        try:
+            self.reference = self.program.reference_with([os.path.join(self._folder, n.strip()) for n in names if n.strip()])
+        except InputError:
+            del self._tree[LIBRARIES]
+            raise
 
     def _checked_section(self, path, values):
         """The content of a section, all of it checked."""
@@ -182,8 +199,9 @@ class Case(Section):
                     continue
                 key = self.reference[full]
                 found[name] = key.text(value)
-                if folder is not None and key.kind["kind"] == "file" and found[name]:
-                    found[name] = os.path.relpath(os.path.join(self._folder, found[name]), folder)
+                if folder is not None and found[name] and "file" in (key.kind["kind"], key.kind.get("of", {}).get("kind")):
+                    files = found[name].split(key.kind["separator"]) if key.kind["kind"] == "list" else [found[name]]
+                    found[name] = ", ".join(os.path.relpath(os.path.join(self._folder, file.strip()), folder) for file in files)
             return found
 
         tree = self._tree

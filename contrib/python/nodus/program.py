@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import warnings
 from functools import cached_property
 
@@ -14,6 +15,7 @@ from .html import table
 from .reference import Reference
 from .results import Results
 
+LIBRARIES = "Additional shared libraries"  # the key
 # The build folder of contrib/build, where this package stands in a source tree.
 _SOURCE_TREE = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))),
                             "build-release", "nodus")
@@ -47,9 +49,11 @@ class Program:
     def __init__(self, path=None):
         self.path = _found(path)
 
-    def _answer(self, option):
-        done = subprocess.run([self.path, option], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False,
+    def _answer(self, option, *file):
+        done = subprocess.run([self.path, *file, option], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False,
                               env=environment())
+        if done.returncode != 0 and file:
+            raise InputError(_message(done.stderr).replace(f"{file[0]}: ", ""))
         if done.returncode != 0:
             raise InputError(f"{self.path} does not know {option}: it is no nodus, or one that is older than this package")
         return done.stdout
@@ -58,6 +62,16 @@ class Program:
     def reference(self):
         """Its keys."""
         return Reference(self._answer("--document-json"))
+
+    def reference_with(self, libraries):
+        """Its keys and those of plug-ins, shared libraries. @throws InputError with what is wrong with one of them"""
+        if not libraries:
+            return self.reference
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "case.prm")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(f"set {LIBRARIES} = {', '.join(map(os.path.abspath, libraries))}\n")
+            return Reference(self._answer("--document-json", path))
 
     @cached_property
     def version(self):
