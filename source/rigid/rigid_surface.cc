@@ -81,9 +81,7 @@ namespace Nodus
   {
     if (!triangles_)
       return text_of(parameters_.shape);
-    return (triangles_->is_closed() ? "closed" : "open") + std::string(" surface of ") +
-           std::to_string(triangles_->n_triangles()) + " triangles (" +
-           std::filesystem::path(parameters_.file).filename().string() + ")";
+    return triangles_->describe() + " (" + std::filesystem::path(parameters_.file).filename().string() + ")";
   }
 
   void RigidSurface::set_increment(const double begin, const double end)

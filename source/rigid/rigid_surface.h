@@ -67,7 +67,7 @@ namespace Nodus
     /// Nothing is inside beyond the rim of an open surface.
     double height(const Point &p) const;
 
-    /// "sphere", or how many triangles of which file.
+    /// "sphere", or what surface of which file.
     std::string describe() const;
 
     /// Where it is, and where its point is (of a sphere the centre).

@@ -179,6 +179,28 @@ namespace Nodus
     }
   }
 
+  std::string TriangleSurface::describe() const
+  {
+    const bool closed = mesh_.n_rim_edges() == 0;
+    TreeBox    box;
+    double     volume = 0.;
+    for (const Point &p : mesh_.vertices())
+      box.add(p);
+    for (unsigned int t = 0; t < n_triangles(); ++t)
+    {
+      const Point &origin = mesh_.vertices()[0];
+      volume += (mesh_.corner(t, 0) - origin) *
+                dealii::cross_product_3d(mesh_.corner(t, 1) - origin, mesh_.corner(t, 2) - origin);
+    }
+    std::ostringstream text;
+    text << (closed ? "closed" : "open") << " surface of " << n_triangles() << " triangles, ";
+    text.precision(4);
+    for (unsigned int c = 0; c < dim; ++c)
+      text << (c > 0 ? " x " : "") << box.upper[c] - box.lower[c];
+    text << (closed && volume < 0. ? " around a cavity" : "");
+    return text.str();
+  }
+
   RigidPoint TriangleSurface::closest(const Point &p) const
   {
     return point(nearest(p), p);

@@ -43,10 +43,8 @@ namespace Nodus
     {
       return mesh_.triangles().size();
     }
-    bool is_closed() const
-    {
-      return mesh_.n_rim_edges() == 0;
-    }
+    /// "closed surface of 12 triangles, 1 x 2 x 3 around a cavity": sizes along the axes [length].
+    std::string describe() const;
 
   private:
     /// The closest point of a patch, at barycentric coordinates 1 - s - t, s, t.

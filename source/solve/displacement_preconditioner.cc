@@ -46,9 +46,9 @@ namespace Nodus
     class AssembledMultigrid : public DisplacementPreconditioner
     {
     public:
-      AssembledMultigrid(const Choice choice, const unsigned int smoother_sweeps)
+      explicit AssembledMultigrid(const Choice choice)
           : choice_(choice)
-          , multigrid_(open_multigrid(choice, smoother_sweeps))
+          , multigrid_(open_multigrid(choice))
       {
       }
       void set_up(const BlockCsrMatrix &K, Constraints constraints, std::vector<double> modes) override
@@ -98,7 +98,7 @@ namespace Nodus
   {
     if (choice == Choice::nodus)
       return std::make_unique<OwnMultigrid>(smoother_sweeps);
-    return std::make_unique<AssembledMultigrid>(choice, smoother_sweeps);
+    return std::make_unique<AssembledMultigrid>(choice);
   }
 
   void require_preconditioner(const Choice choice, const MPI_Comm communicator)
@@ -108,7 +108,7 @@ namespace Nodus
     std::string problem;
     try
     {
-      open_multigrid(choice, 1);
+      open_multigrid(choice);
     }
     catch (const InputError &error)
     {

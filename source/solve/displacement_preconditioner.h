@@ -27,8 +27,8 @@ namespace Nodus
     virtual void release() = 0;
   };
 
-  /// @param smoother_sweeps before and after the coarse correction @throws InputError where the library is not
-  /// installed
+  /// @param smoother_sweeps of nodus's own, before and after the coarse correction @throws InputError where the library
+  /// is not installed
   std::unique_ptr<DisplacementPreconditioner>
   make_displacement_preconditioner(LinearSolverParameters::Preconditioner choice, unsigned int smoother_sweeps);
 

@@ -143,7 +143,7 @@ namespace
   /// A cube compressed by 1 % by a plate that ends where x = end, with some play in y.
   void check_plate(const Scheme scheme, const double end)
   {
-    write(plate, Stl::plate(Point(-0.2, -0.2, 0.), Vector3({0., 1.4, 0.}), Vector3({0.2 + end, 0., 0.}), 3)); // down
+    write(plate, Stl::plate(Point(-0.2, -0.2, 0.), Vector3({0., 1.4, 0.}), Vector3({0.2 + end, 0., 0.}), 2)); // down
     Parameters p;
     p.bodies                   = {box("cube", "4,4,2", {0, 0, 0}, {1, 1, 1}, 1000, 0.)};
     p.boundary_conditions      = {hold("x", region(1, {x_minus}), {0}),

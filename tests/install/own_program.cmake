@@ -38,3 +38,13 @@ string(REGEX MATCHALL "(increment [0-9]+, t|sunk by)[^\n]*" _lines "${log}")
 foreach(_line ${_lines})
   message("${_line}")
 endforeach()
+
+# Programs find what nodus opens by itself: the copy's, and those that are linked to it.
+file(GLOB_RECURSE _multigrid ${FOLDER}/copy/*/libnodus_ml.so)
+if(_multigrid)
+  file(READ ${SOURCE_DIR}/contrib/examples/own_program/block.prm _case)
+  file(WRITE ${FOLDER}/preconditioned/block.prm
+    "${_case}\nsubsection Linear solver\n  set Type = condensed\n  set Preconditioner = ML\nend\n")
+  run(${CMAKE_COMMAND} -E chdir ${FOLDER} ${FOLDER}/copy/bin/nodus ${FOLDER}/preconditioned/block.prm --validate)
+  run(${CMAKE_COMMAND} -E chdir ${FOLDER} ${FOLDER}/build_own_program/own_program ${FOLDER}/preconditioned)
+endif()

@@ -57,8 +57,7 @@ namespace
       for (const double k : c.curvature)
         bent = std::max(bent, std::abs(k - 1.));
     }
-    report("sphere of " + std::to_string(surface.n_triangles()) + (smoothed ? " rounded triangles" : " triangles"),
-           surface.is_closed() ? "closed" : "open");
+    report(smoothed ? "sphere, rounded" : "sphere", surface.describe());
     check("  closest points are found", found);
     show("  largest error of heights [radii]", height, bound);
     if (!smoothed)
@@ -120,10 +119,12 @@ namespace
       if (beyond > 1)
         turn = std::max(turn, (c.normal - (p - c.x) / (p - c.x).norm()).norm() * expected);
     }
-    report("box", std::string(smoothed ? "rounded, " : "") + (surface.is_closed() ? "closed" : "open"));
+    report(smoothed ? "box, rounded" : "box", surface.describe());
     show("  largest error of heights over and below its sides", sides, 1e-12);
     show("  beyond its edges", edges, 1e-4);
     show("  normals there, over the distance", turn, 3e-3);
+    const Vector3 mean({1. / std::sqrt(2.), 1. / std::sqrt(2.), 0.});
+    check("  on an edge", (surface.closest(Point(half[0], half[1], 0.1) + 1e-9 * mean).normal - mean).norm() < 1e-6);
   }
 
   void test_plate()
@@ -145,7 +146,7 @@ namespace
       height   = std::max(height, std::abs(c.height - (p[2] - 0.5)));
       overhang = std::max(overhang, std::abs(c.overhang - beyond));
     }
-    report("plate of 2 by 2", surface.is_closed() ? "closed" : "open");
+    report("plate", surface.describe());
     show("  largest error of heights", height, 1e-12);
     show("  of how far points are beyond the rim", overhang, 1e-12);
     check("  found up to a triangle beyond the rim", found);
@@ -285,7 +286,8 @@ namespace
     const auto                     one = TriangleSurface::of_file("triangle_surface.stl", options),
                two                     = TriangleSurface::of_file("triangle_surface.stl", options);
     check("  once for all that use it", one == two);
-    check("  scaled, shifted and turned over: height at its centre", one->height(Point(0., 0., 1.)), 20., 2e-2);
+    report("  scaled, shifted and turned over", one->describe());
+    check("  height at its centre", one->height(Point(0., 0., 1.)), 20., 2e-2);
   }
 
   void refuse(const std::string &what, const std::string &content)

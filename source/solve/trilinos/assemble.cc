@@ -207,11 +207,11 @@ namespace Nodus
       }
       std::sort(local_row_.begin(), local_row_.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
       // prescribed displacements and those that contact eliminates have rows and columns of zeros
-      bool held[dim];
-      for (unsigned int a = 0; a < dim; ++a)
-        held[a] = std::all_of(local_row_.begin(),
-                              local_row_.end(),
-                              [&](const auto &entry) { return entry.first == node || entry.second.row(a).isZero(0.); });
+      bool held[dim] = {true, true, true};
+      for (const auto &[c, block] : local_row_)
+        for (unsigned int a = 0; a < dim; ++a)
+          for (unsigned int b = 0; b < dim; ++b)
+            held[a] = held[a] && ((c == node && a == b) || block(a, b) == 0.);
       for (unsigned int a = 0; a < dim; ++a)
       {
         for (const auto &[c, block] : local_row_)

@@ -42,9 +42,8 @@ namespace Nodus
     }
   } // namespace
 
-  std::unique_ptr<OutsideMultigrid> open_multigrid(const LinearSolverParameters::Preconditioner choice,
-                                                   const unsigned int                           smoother_sweeps)
+  std::unique_ptr<OutsideMultigrid> open_multigrid(const LinearSolverParameters::Preconditioner choice)
   {
-    return std::unique_ptr<OutsideMultigrid>(find(choice)(smoother_sweeps));
+    return std::unique_ptr<OutsideMultigrid>(find(choice)());
   }
 } // namespace Nodus

@@ -11,8 +11,7 @@ namespace Nodus
   /// Opens the shared library with the multigrid @p choice, which is none of nodus's own, where the linker finds it: in
   /// the folders that the program was linked with, and in LD_LIBRARY_PATH. @throws InputError that names what to
   /// install
-  std::unique_ptr<OutsideMultigrid> open_multigrid(LinearSolverParameters::Preconditioner choice,
-                                                   unsigned int                           smoother_sweeps);
+  std::unique_ptr<OutsideMultigrid> open_multigrid(LinearSolverParameters::Preconditioner choice);
 } // namespace Nodus
 
 #endif

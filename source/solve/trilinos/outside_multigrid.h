@@ -33,7 +33,7 @@ namespace Nodus
   public:
     virtual ~OutsideMultigrid() = default;
 
-    /// Makes the hierarchy of @p A. What the library can keep of the one before, it keeps where the entries are at the
+    /// Makes the hierarchy of @p A. What the library can keep of the one before, it may keep where the entries are at the
     /// same places. @param modes six of the owned unknowns, one after the other. Collective. @throws std::exception
     virtual void set_up(AssembledMatrix A, const std::vector<double> &modes) = 0;
 
@@ -41,8 +41,8 @@ namespace Nodus
     virtual void vmult(double *dst, const double *src) const = 0;
   };
 
-  /// The function that a library exports; @p smoother_sweeps before and after the coarse correction.
-  using MakeOutsideMultigrid = OutsideMultigrid *(unsigned int smoother_sweeps);
+  /// The function that a library exports.
+  using MakeOutsideMultigrid = OutsideMultigrid *();
 
   /// Its name, which changes with the classes above, so that no library of another version is taken.
 #define NODUS_OUTSIDE_MULTIGRID nodus_outside_multigrid_1
