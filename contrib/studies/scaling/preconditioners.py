@@ -117,6 +117,11 @@ def answers(row, chosen, kept):
               f"statuses {'the same' if same else 'others'}", flush=True)  # fmt: skip
 
 
+def tell(difference):
+    """contact.csv has twelve digits."""
+    return f"{difference:.0e}" if difference > 1e-12 else "< 1e-12"
+
+
 def page(kept):
     header = ["case", "preconditioner", "CPU s", "/ nodus", "set-up s", "iterations s", "peak MiB", "Newton", "Krylov",
               "forces differ by", "all differs by", "same statuses"]  # fmt: skip
@@ -130,13 +135,14 @@ def page(kept):
             rows.append([
                 row, preconditioner, f"{r['cpu']:.1f}", f"{r['cpu'] / own['cpu']:.2f}", f"{r['set-up']:.1f}",
                 f"{r['iterations']:.1f}", f"{r['peak']:.0f}", r["Newton"], r["Krylov"],
-                *((f"{a['force']:.0e}", f"{a['all']:.0e}", "yes" if a["same"] else "no") if a else ("", "", "")),
+                *((tell(a["force"]), tell(a["all"]), "yes" if a["same"] else "no") if a else ("", "", "")),
             ])  # fmt: skip
     path = os.path.join(hertz_case.HERE, "preconditioners.md")
     with open(path) as file:
         text = file.read()
     table = common.table(path, header, rows)
-    made = f"\nOn {hertz_case.machine()}, one process; {kept.dates()}.\n\n{table}\n"
+    rounds = sorted({kept.get(f"{row}: {p}")["rounds"] for row in CASES for p in PRECONDITIONERS if kept.get(f"{row}: {p}")})
+    made = f"\nOn {hertz_case.machine()}; {kept.dates()}; rounds: {', '.join(map(str, rounds))}.\n\n{table}\n"
     begin, end = "<!-- table: preconditioners.py -->\n", "<!-- end of the table -->\n"
     with open(path, "w") as file:
         file.write(text[: text.index(begin) + len(begin)] + made + text[text.index(end) :])

@@ -33,8 +33,8 @@ namespace Nodus
   public:
     virtual ~OutsideMultigrid() = default;
 
-    /// Makes the hierarchy of @p A. What the library can keep of the one before, it may keep where the entries are at the
-    /// same places. @param modes six of the owned unknowns, one after the other. Collective. @throws std::exception
+    /// Makes the hierarchy of @p A. What the library can keep of the one before, it may keep where the entries are at
+    /// the same places. @param modes six of the owned unknowns, one after the other. Collective. @throws std::exception
     virtual void set_up(AssembledMatrix A, const std::vector<double> &modes) = 0;
 
     /// One cycle on the owned unknowns, symmetric. Collective. @throws std::exception
