@@ -1,6 +1,7 @@
 """The program nodus: where it is, what it says about its keys, and runs of it."""
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -53,7 +54,7 @@ class Program:
         done = subprocess.run([self.path, *file, option], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False,
                               env=environment())
         if done.returncode != 0 and file:
-            raise InputError(_message(done.stderr).replace(f"{file[0]}: ", ""))
+            raise InputError(re.sub(re.escape(file[0]) + r"(:\d+)?: ", "", _message(done.stderr)))
         if done.returncode != 0:
             raise InputError(f"{self.path} does not know {option}: it is no nodus, or one that is older than this package")
         return done.stdout
