@@ -228,7 +228,11 @@ namespace Nodus
                                   surfaces.expand(node,
                                                   sign * part,
                                                   [&](const unsigned int free_node, const double factor)
-                                                  { shares_.row(place_of_node_[free_node]) += factor * row; });
+                                                  {
+                                                    // those around a node of an average that has no weight are missing
+                                                    if (const unsigned int at = place_of_node_[free_node]; at != none)
+                                                      shares_.row(at) += factor * row;
+                                                  });
                                 });
     }
   }
