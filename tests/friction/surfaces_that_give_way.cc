@@ -157,11 +157,13 @@ namespace
     Parameters p                        = case_of(way, laws);
     p.bodies[1].material.youngs_modulus = E;
     std::ostringstream drag;
-    drag << "if(t<0.3," << D[0] << ",if(t<0.6," << D[1] << ",if(t<0.8," << D[2] << "," << D[3] << ")))";
+    for (unsigned int i = 0; i + 1 < D.size(); ++i)
+      drag << "if(t<" << (i + 1.5) / D.size() << ',' << D[i] << ',';
+    drag << D.back() << std::string(D.size() - 1, ')');
     p.boundary_conditions.push_back(drive("down", region(2, {z_plus}), 2, std::to_string(-down)));
     p.boundary_conditions.push_back(hold("guide", region(2, {y_minus, y_plus}), {1}));
     p.boundary_conditions.push_back(drive("drag", region(2, {z_plus}), 0, drag.str()));
-    p.load_stepping.increments = {4};
+    p.load_stepping.increments = {static_cast<unsigned int>(D.size())};
     std::vector<double> forces;
     ContactProblem      problem(p, world(), log());
     problem.on_increment([&](unsigned int, double)
@@ -219,18 +221,18 @@ namespace
     for (unsigned int i = 0; i < 4; ++i)
       check("Coulomb, elastic slip " + std::to_string(expected[i]), -stiff[i], stiffness * expected[i], 1e-6);
 
-    // slides forth by 0.03 in the second increment, and back by 0.02 in the fourth
-    laws                                 = ContactPairParameters();
-    laws.pressure_gap                    = layer.pressure_gap;
-    laws.elastic_slip                    = 1e-4;
-    laws.friction_law                    = ContactPairParameters::FrictionLaw::own;
-    laws.own_friction_law.object         = std::make_shared<RunningIn>();
-    const std::vector<double> way_before = {0., 0.01, 0.04, 0.05};
-    const auto                run_in     = sheared(way, laws, 1e10, 0.005, {0.01, 0.04, 0.03, 0.01});
-    for (unsigned int i = 0; i < 4; ++i)
-      check("own law, way " + std::to_string(way_before[i]),
+    // slides forth by 0.03 in the second increment, unloads in the third, and slides back by 0.02 in the last one
+    laws                         = ContactPairParameters();
+    laws.pressure_gap            = layer.pressure_gap;
+    laws.elastic_slip            = 1e-4;
+    laws.friction_law            = ContactPairParameters::FrictionLaw::own;
+    laws.own_friction_law.object = std::make_shared<RunningIn>();
+    const auto run_in            = sheared(way, laws, 1e10, 0.005, {0.01, 0.04, 0.0399, 0.03, 0.01});
+    const std::vector<std::pair<unsigned int, double>> way_before = {{0, 0.}, {1, 0.01}, {3, 0.0401}, {4, 0.05}};
+    for (const auto &[i, before] : way_before)
+      check("own law, way " + std::to_string(before),
             -run_in[i],
-            (i < 2 ? 10. : -10.) * RunningIn::coefficient(way_before[i]),
+            (i < 2 ? 10. : -10.) * RunningIn::coefficient(before),
             1e-6);
   }
 } // namespace
