@@ -18,6 +18,7 @@ install(DIRECTORY include/nodus DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONEN
 set(_package ${CMAKE_INSTALL_LIBDIR}/cmake/nodus)
 install(EXPORT nodus NAMESPACE nodus:: FILE nodusTargets.cmake DESTINATION ${_package} COMPONENT development)
 string(TOUPPER ${CMAKE_BUILD_TYPE} NODUS_UPPER_BUILD_TYPE)
+string(TOLOWER ${CMAKE_BUILD_TYPE} NODUS_LOWER_BUILD_TYPE)
 configure_package_config_file(contrib/cmake/nodusConfig.cmake.in ${CMAKE_BINARY_DIR}/nodusConfig.cmake
   INSTALL_DESTINATION ${_package} PATH_VARS NODUS_MULTIGRID_FOLDER)
 # Before 1.0 the interface may change with the second number.
