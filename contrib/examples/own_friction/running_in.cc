@@ -1,5 +1,5 @@
-// Surfaces that run in: Coulomb's friction with a coefficient that falls from its first to its last value with the way w
-// that they have rubbed,
+// Surfaces that run in: Coulomb's friction with a coefficient that falls from its first to its last value with the way
+// w that they have rubbed,
 //   tau = (mu_e + (mu_0 - mu_e) exp(-w/l)) p,
 // and a layer of asperities that stiffens under pressure, p = p_0 (d/d_0 + (d/d_0)^2).
 
