@@ -27,7 +27,7 @@ namespace Nodus
       const FaceShape shape(master.degree(), point.xi, point.eta);
       const Vector3   normal = pair.normal == ContactPairParameters::Normal::averaged
                                    ? master.averaged_normal(point.face, point.xi, point.eta)
-                                   : master.normal(point.face, point.xi, point.eta);
+                                   : master.facet_normal(point.face, point.xi, point.eta);
       return {static_cast<unsigned int>(nodes.size()),
               nodes.data(),
               shape.value,

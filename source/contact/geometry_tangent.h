@@ -65,6 +65,7 @@ namespace Nodus
     std::array<Motion, 2>       projection_motion(unsigned int site) const;
     void                        add_slave_motion(unsigned int site, const Vector3 &dual, Motion &motion) const;
     std::vector<NodeDerivative> normal_derivative(unsigned int site) const;
+    std::vector<NodeDerivative> facet_normal_derivative(unsigned int pair, const Projection &master, double part) const;
     std::vector<NodeDerivative> slave_normal_derivative(unsigned int site) const;
     std::vector<NodeDerivative> rigid_normal_derivative(unsigned int site) const;
     void add_projection(unsigned int site, const std::array<Motion, 2> &motion, SiteVariation &variation) const;

@@ -223,6 +223,37 @@ namespace Nodus
     return derivative;
   }
 
+  /// Of a facet with @p part of the averaged normal (eq. P5), at fixed local coordinates.
+  std::vector<NodeDerivative>
+  GeometryTangent::facet_normal_derivative(const unsigned int pair, const Projection &master, const double part) const
+  {
+    const auto [f, xi, eta]        = master;
+    const SurfaceGeometry &surface = geometry_.master[pair];
+    const FaceShape        shape(2, xi, eta);
+    const FaceGeometry     x          = surface.at(f, xi, eta);
+    const auto             d_xi       = SurfaceGeometry::offset_functions(shape.d_xi),
+               d_eta                  = SurfaceGeometry::offset_functions(shape.d_eta);
+    const Matrix3               cross = surface.face(f).orientation * unit_derivative(x.area_vector());
+    std::vector<NodeDerivative> derivative;
+    surface.normal_derivative(f, xi, eta, derivative);
+    for (unsigned int i = 0; i < VariationSources::n_moving(surface, f); ++i)
+      Nodus::add(derivative,
+                 sources_.part(pair, true, f, i),
+                 cross * (d_eta[i] * cross_matrix(x.d_xi) - d_xi[i] * cross_matrix(x.d_eta)));
+    if (part == 0.)
+      return derivative;
+
+    const Matrix3 to_unit =
+        unit_derivative(part * surface.averaged_normal(f, xi, eta) + (1. - part) * surface.normal(f, xi, eta));
+    for (NodeDerivative &d : derivative)
+      d.value = (1. - part) * to_unit * d.value;
+    std::vector<NodeDerivative> averaged;
+    surface.averaged_normal_derivative(f, xi, eta, averaged);
+    for (const NodeDerivative &d : averaged)
+      Nodus::add(derivative, d.node, part * to_unit * d.value);
+    return derivative;
+  }
+
   std::vector<NodeDerivative> GeometryTangent::normal_derivative(const unsigned int site) const
   {
     using Normal                       = ContactPairParameters::Normal;
@@ -237,24 +268,13 @@ namespace Nodus
     if (rigid)
       return rigid_normal_derivative(site);
 
-    const auto [f, xi, eta]          = master;
-    const SurfaceGeometry &surface   = geometry_.master[p];
-    const bool             averaging = pairs_[p].normal == Normal::averaged;
-    if (averaging)
+    const auto [f, xi, eta]        = master;
+    const SurfaceGeometry &surface = geometry_.master[p];
+    const double           part    = pairs_[p].normal == Normal::averaged ? 1. : SurfaceGeometry::edge_part(xi, eta);
+    if (part == 1.)
       surface.averaged_normal_derivative(f, xi, eta, derivative);
     else
-    {
-      surface.normal_derivative(f, xi, eta, derivative);
-      const FaceShape    shape(2, xi, eta);
-      const FaceGeometry x    = surface.at(f, xi, eta);
-      const auto         d_xi = SurfaceGeometry::offset_functions(shape.d_xi),
-                 d_eta        = SurfaceGeometry::offset_functions(shape.d_eta);
-      const Matrix3 to_unit   = surface.face(f).orientation * unit_derivative(x.area_vector());
-      for (unsigned int i = 0; i < VariationSources::n_moving(surface, f); ++i)
-        Nodus::add(derivative,
-                   sources_.part(p, true, f, i),
-                   to_unit * (d_eta[i] * cross_matrix(x.d_xi) - d_xi[i] * cross_matrix(x.d_eta)));
-    }
+      derivative = facet_normal_derivative(p, master, part);
     for (NodeDerivative &d : derivative)
       d.value = -d.value;
 
@@ -265,8 +285,8 @@ namespace Nodus
       const double     dx = alpha == 0 ? step : 0., dy = alpha == 1 ? step : 0.;
       const auto       normal = [&](const double sign)
       {
-        return averaging ? surface.averaged_normal(f, xi + sign * dx, eta + sign * dy)
-                         : surface.normal(f, xi + sign * dx, eta + sign * dy);
+        return pairs_[p].normal == Normal::averaged ? surface.averaged_normal(f, xi + sign * dx, eta + sign * dy)
+                                                    : surface.facet_normal(f, xi + sign * dx, eta + sign * dy);
       };
       const Vector3 slope = (normal(-1.) - normal(1.)) / (2. * step);
       for (const auto &[source, value] : motion[alpha])

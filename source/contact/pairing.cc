@@ -187,7 +187,7 @@ namespace Nodus
         if (pairs[p].normal == Normal::averaged)
           normal = -geometry.master[p].averaged_normal(face, xi, eta);
         else if (pairs[p].normal == Normal::master_facet)
-          normal = -geometry.master[p].normal(face, xi, eta);
+          normal = -geometry.master[p].facet_normal(face, xi, eta);
       }
       else if (rigid.found)
       {

@@ -11,6 +11,8 @@ namespace Nodus
   {
     /// Least length of an averaged normal in the plane of symmetry of its node, before it is made a unit vector.
     constexpr double in_plane = 0.5;
+    /// Width of the strips along the edges of a face in which its normal turns into the averaged one, in faces.
+    constexpr double edge_strip = 0.1;
   } // namespace
 
   SurfaceGeometry::SurfaceGeometry(const std::vector<SurfaceFace>           &faces,
@@ -282,5 +284,19 @@ namespace Nodus
     for (unsigned int n = 0; n < shape.n; ++n)
       normal += shape.value[n] * nodal_normal(f, n);
     return normal / normal.norm();
+  }
+
+  double SurfaceGeometry::edge_part(const double xi, const double eta)
+  {
+    return std::clamp(1. - std::min({xi, 1. - xi, eta, 1. - eta}) / edge_strip, 0., 1.);
+  }
+
+  Vector3 SurfaceGeometry::facet_normal(const unsigned int f, const double xi, const double eta) const
+  {
+    const double part = edge_part(xi, eta);
+    if (part == 0.)
+      return normal(f, xi, eta);
+    const Vector3 sum = part * averaged_normal(f, xi, eta) + (1. - part) * normal(f, xi, eta);
+    return sum / sum.norm();
   }
 } // namespace Nodus

@@ -84,6 +84,11 @@ namespace Nodus
     Vector3 normal(unsigned int f, double xi, double eta) const;
     /// Outward unit normal interpolated from the averaged ones of the nodes.
     Vector3 averaged_normal(unsigned int f, double xi, double eta) const;
+    /// Outward unit normal of the face, which turns into the averaged one in a strip along its edges, so that it does
+    /// not jump from face to face (eq. P5).
+    Vector3 facet_normal(unsigned int f, double xi, double eta) const;
+    /// Part of the averaged normal in it: 1 on the edges, 0 beyond the strip.
+    static double edge_part(double xi, double eta);
     /// Smoothed position minus the one that the displacement shape functions give; zero when faceted.
     Vector3 offset(unsigned int f, double xi, double eta) const;
 

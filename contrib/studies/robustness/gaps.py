@@ -92,7 +92,7 @@ class Pair:
         if self.kind == "slave":
             choices = np.arange(len(x))[found], self.node_normal[found]
         else:
-            choices = ties[0], -self.master.normal(*ties[1:], self.kind == "averaged")
+            choices = ties[0], self.normal_of_master(*ties[1:])
         if self.keys["Scheme"] == "integration point":  # frames of the multipliers alone
             rows.normal[:] = self.node_normal
             beyond = np.where(found & (over > 0.9 * TOLERANCE))[0]
@@ -133,6 +133,11 @@ class Pair:
         self.add_areas(rows.area, xi, eta, w)
         return rows
 
+    def normal_of_master(self, face, xi, eta):
+        if self.kind == "averaged":
+            return -self.master.normal(face, xi, eta, True)
+        return -self.master.facet_normal(face, xi, eta)
+
     def add_areas(self, area, xi, eta, w):
         f = np.repeat(np.arange(len(self.faces)), len(w))
         xi, eta, w = (np.tile(v, len(self.faces)) for v in (xi, eta, w))
@@ -163,7 +168,7 @@ class Pair:
         hit = np.where(face >= 0)[0]
         distance, normal = np.full(len(f), -np.inf), self.slave.normal(f, xi, eta, True)
         if self.kind != "slave":
-            normal[hit] = -self.master.normal(face[hit], a[hit], b[hit], self.kind == "averaged")
+            normal[hit] = self.normal_of_master(face[hit], a[hit], b[hit])
         apart = self.slave.at(f[hit], xi[hit], eta[hit])[0] - self.master.at(face[hit], a[hit], b[hit])[0]
         distance[hit] = (apart * normal[hit]).sum(1)
         return distance, f, xi, eta, w * self.slave.element(f, xi, eta), face >= 0, (face >= 0) & (over > 0.9 * TOLERANCE), normal
@@ -210,7 +215,7 @@ class Pair:
         np.add.at(whole, self.faces, dual_part[:, None] * exact + (1 - dual_part[:, None]) * full)
         sites = self.faces[f]  # (q, nn)
         gap = self.slave.at(f, s, t)[0] - self.master.at(m, a, b)[0]
-        across = self.slave.normal(f, s, t, True) if self.kind == "slave" else -self.master.normal(m, a, b, self.kind == "averaged")
+        across = self.slave.normal(f, s, t, True) if self.kind == "slave" else self.normal_of_master(m, a, b)
         mean, normal = np.zeros((len(self.nodes), 3)), np.zeros((len(self.nodes), 3))
         np.add.at(rows.area, sites, psi)
         np.add.at(mean, sites, psi[:, :, None] * gap[:, None])

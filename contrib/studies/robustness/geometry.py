@@ -190,6 +190,12 @@ class Surface:
             n = np.cross(t1, t2)
         return n / np.linalg.norm(n, axis=1)[:, None]
 
+    def facet_normal(self, f, xi, eta):
+        """(P5): normals of the faces, averaged ones on their edges."""
+        s = np.maximum(0, 1 - np.min([xi, 1 - xi, eta, 1 - eta], axis=0) / 0.1)[:, None]
+        n = s * self.normal(f, xi, eta, True) + (1 - s) * self.normal(f, xi, eta, False)
+        return n / np.linalg.norm(n, axis=1)[:, None]
+
     def closest(self, p, normal, last=False):
         """Closest points of faces that do not look along `normal` (far sides). p, normal: (n, 3). Returns face (-1: none), xi, eta,
         how far the point hangs over the rim [face sizes], (n,) each; and ties, which single precision does not tell apart: point,

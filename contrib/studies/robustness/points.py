@@ -48,6 +48,26 @@ def multipliers(points, pair, augmentation, found, regularised):
     return best
 
 
+def best_partners(points, pair, augmentation, regularised):
+    """multipliers() with the choice of partners that the files leave open: those points of which only the history tells whether
+    they have one change sides one at a time, until none makes the laws fit better."""
+    found = points.found.copy()
+    best = multipliers(points, pair, augmentation, found, regularised)
+    open_choices = np.flatnonzero(points.found & points.unsure)
+    for _ in open_choices:
+        before = best[2].max()
+        for q in open_choices:
+            found[q] = not found[q]
+            trial = multipliers(points, pair, augmentation, found, regularised)
+            if trial[2].max() < best[2].max():
+                best = trial
+            else:
+                found[q] = not found[q]
+        if best[2].max() == before:
+            break
+    return best
+
+
 def check_points(find, state, pair, row):
     """Depth of the points; Signorini's law in the mean; friction of each node at most what the pressures of its points allow."""
     t, name, mu = state.t, pair.name, state.case.facts["mu"]
@@ -64,8 +84,7 @@ def check_points(find, state, pair, row):
     augmentation = young / state.reference_size(pair)
     trials = []
     for regularised in (False, True)[: 1 + (int(row["regularised law"]) > 0)]:
-        for found in (points.found, sure)[: 1 + points.unsure.any()]:
-            trials.append((*multipliers(points, pair, augmentation, found, regularised), regularised))
+        trials.append((*best_partners(points, pair, augmentation, regularised), regularised))
     values, closed, law, regularised = min(trials, key=lambda trial: trial[2].max())
     # gaps are known to the last digits of positions; friction on a curved surface has a part along the normal of the node
     blur = augmentation * state.noise / largest
