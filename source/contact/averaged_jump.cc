@@ -23,39 +23,22 @@ namespace Nodus
     /// Entries of the slave part below this are round-off of the biorthogonality.
     constexpr double smallest_entry = 1e-13;
 
-    /// Points of a fixed rule with their closest master points; returns the covered fraction.
-    double face_points(const SurfaceGeometry       &slave,
-                       const unsigned int           f,
-                       const dealii::Quadrature<2> &rule,
-                       const MasterSearch          &search,
-                       const double                 reach,
-                       const double                 tolerance,
-                       std::vector<MortarPoint>    &points)
+    /// The closest master point of @p x, of a rigid master empty: whoever needs it finds it again. @returns the part of
+    /// the slave point that counts: beyond the rim it fades out (eq. J7), and is 0 where there is no partner.
+    double find_partner(
+        const ContactGeometry &geometry, const unsigned int pair, const Point &x, const Vector3 &normal, Projection &at)
     {
-      points.clear();
-      double area = 0., covered = 0.;
-      bool   inside = false;
-      for (unsigned int q = 0; q < rule.size(); ++q)
+      if (geometry.rigid[pair] != nullptr)
       {
-        const double       xi = rule.point(q)[0], eta = rule.point(q)[1];
-        const FaceGeometry geometry = slave.at(f, xi, eta);
-        const double       part     = rule.weight(q) * geometry.area_vector().norm();
-        area += part;
-        const Projection master = search.closest(geometry.x, slave.normal(f, xi, eta), reach, tolerance);
-        if (!master.found())
-          continue;
-        covered += part;
-        inside = inside || search.closest(geometry.x, slave.normal(f, xi, eta), reach, 0.).found();
-        points.push_back({xi, eta, rule.weight(q), master});
+        const RigidPoint point    = geometry.closest_on_rigid(pair, x, normal);
+        const double     overhang = point.overhang > 0. ? point.overhang / geometry.overhang[pair] : 0.;
+        return point.found ? ContactGeometry::counted_part(overhang) : 0.;
       }
-      // A face of which nothing but overhang is covered would repeat the constraints of its neighbour.
-      if (!inside)
-        points.clear();
-      return inside ? covered / area : 0.;
+      at = geometry.search[pair].closest(x, normal, geometry.reach[pair]);
+      return at.found() ? ContactGeometry::counted_part(geometry.search[pair].overhang(at, x).norm()) : 0.;
     }
 
-    /// The same where the master is rigid. The master points are not kept: whoever needs them finds them again from the
-    /// slave points.
+    /// Points of a fixed rule with their closest master points; returns the covered fraction.
     double face_points(const ContactGeometry       &geometry,
                        const unsigned int           pair,
                        const unsigned int           f,
@@ -64,23 +47,20 @@ namespace Nodus
     {
       const SurfaceGeometry &slave = geometry.slave[pair];
       double                 area = 0., covered = 0.;
-      bool                   inside = false;
+      points.clear();
       for (unsigned int q = 0; q < rule.size(); ++q)
       {
         const double       xi = rule.point(q)[0], eta = rule.point(q)[1];
-        const FaceGeometry point = slave.at(f, xi, eta);
-        const double       part  = rule.weight(q) * point.area_vector().norm();
-        area += part;
-        const RigidPoint master = geometry.closest_on_rigid(pair, point.x, slave.normal(f, xi, eta));
-        if (!master.found)
-          continue;
-        covered += part;
-        inside = inside || master.overhang == 0.;
-        points.push_back({xi, eta, rule.weight(q), Projection()});
+        const FaceGeometry point  = slave.at(f, xi, eta);
+        const double       weight = rule.weight(q) * point.area_vector().norm();
+        Projection         master;
+        const double       counts = find_partner(geometry, pair, point.x, slave.normal(f, xi, eta), master);
+        area += weight;
+        covered += counts * weight;
+        if (counts > 0.)
+          points.push_back({xi, eta, counts * rule.weight(q), master});
       }
-      if (!inside)
-        points.clear();
-      return inside ? covered / area : 0.;
+      return covered / area;
     }
 
     /// A hanging node is where those are that it follows, but for its reference position.
@@ -213,14 +193,11 @@ namespace Nodus
                                  Face                        &face)
   {
     const unsigned int p = face.pair, f = face.face;
-    if (geometry.rigid[p] != nullptr)
-      face.coverage = face_points(geometry, p, f, rule, face.points);
-    else if (pair.integration == ContactPairParameters::Integration::segment)
+    if (geometry.rigid[p] == nullptr && pair.integration == ContactPairParameters::Integration::segment)
       face.coverage = segment_points(
           geometry.slave[p], f, geometry.master[p], geometry.search[p], geometry.reach[p], face.points, face.trace);
     else
-      face.coverage = face_points(
-          geometry.slave[p], f, rule, geometry.search[p], geometry.reach[p], pair.projection_tolerance, face.points);
+      face.coverage = face_points(geometry, p, f, rule, face.points);
   }
 
   void AveragedJump::compute(const std::vector<ContactPairParameters> &pairs,

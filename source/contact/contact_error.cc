@@ -13,7 +13,7 @@ namespace Nodus
   {
     /// Slave faces may be larger than the opposite ones by this much before they are split.
     constexpr double tolerated_size_ratio = 4. / 3.;
-    /// Points on the rim of the master surface face it in spite of round-off; in face sizes.
+    /// Points on the rim of the master surface face it in spite of round-off; over the projection tolerance.
     constexpr double tolerated_overhang = 1e-6;
 
     /// What slave faces say about master faces, on its way to the owners of these.

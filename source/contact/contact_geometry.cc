@@ -15,6 +15,8 @@ namespace Nodus
   {
     /// Master faces looking along the slave's outward normal (cosine above this) are the far side of a body.
     constexpr double far_side_cosine = 0.5;
+    /// Face sizes that a point on the rim may be beyond it by round-off.
+    constexpr double no_tolerance = 1e-12;
   } // namespace
 
   struct MasterSearch::Tree
@@ -23,8 +25,9 @@ namespace Nodus
     decltype(dealii::pack_rtree(std::vector<Leaf>())) leaves;
   };
 
-  MasterSearch::MasterSearch(const SurfaceGeometry &master)
+  MasterSearch::MasterSearch(const SurfaceGeometry &master, const double tolerance)
       : master_(master)
+      , tolerance_(std::max(tolerance, no_tolerance))
       , tree_(std::make_unique<Tree>())
       , on_rim_(master.n_faces())
   {
@@ -78,7 +81,7 @@ namespace Nodus
   MasterSearch::MasterSearch(MasterSearch &&) noexcept = default;
 
   Projection
-  MasterSearch::closest(const Point &p, const Vector3 &slave_normal, const double reach, const double tolerance) const
+  MasterSearch::closest(const Point &p, const Vector3 &slave_normal, const double reach, const double part) const
   {
     namespace bgi = boost::geometry::index;
     Projection best;
@@ -104,16 +107,18 @@ namespace Nodus
       return best;
 
     // A point beyond the rim of the master surface has no partner, but for a small overhang.
-    const auto &rim = on_rim_[best.face];
-    if ((best.xi <= 0. && rim[0]) || (best.xi >= 1. && rim[1]) || (best.eta <= 0. && rim[2]) ||
-        (best.eta >= 1. && rim[3]))
-    {
-      const Vector3 n = master_.normal(best.face, best.xi, best.eta);
-      const Vector3 r = p - master_.at(best.face, best.xi, best.eta).x;
-      if ((r - (r * n) * n).norm() > tolerance * size_[best.face])
-        return Projection();
-    }
-    return best;
+    return overhang(best, p).norm() <= part ? best : Projection();
+  }
+
+  Vector3 MasterSearch::overhang(const Projection &closest, const Point &p) const
+  {
+    const auto &[f, xi, eta] = closest;
+    const auto &rim          = on_rim_[f];
+    if (!(xi <= 0. && rim[0]) && !(xi >= 1. && rim[1]) && !(eta <= 0. && rim[2]) && !(eta >= 1. && rim[3]))
+      return Vector3();
+    const Vector3 n = master_.normal(f, xi, eta);
+    const Vector3 r = p - master_.at(f, xi, eta).x;
+    return (r - (r * n) * n) / tolerated_overhang(f);
   }
 
   void MasterSearch::candidates(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &faces) const
@@ -136,7 +141,7 @@ namespace Nodus
     {
       slave.emplace_back(surfaces.slave_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
       master.emplace_back(surfaces.master_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
-      search.emplace_back(master[p]);
+      search.emplace_back(master[p], pairs[p].projection_tolerance);
       rigid.push_back(surfaces.rigid_master(p));
       overhang.push_back(pairs[p].projection_tolerance * surfaces.face_size(p));
     }
@@ -145,11 +150,11 @@ namespace Nodus
   RigidPoint ContactGeometry::closest_on_rigid(const unsigned int pair,
                                                const Point       &p,
                                                const Vector3     &slave_normal,
-                                               const double       tolerance) const
+                                               const double       part) const
   {
     RigidPoint point = rigid[pair]->closest(p);
-    point.found      = point.found && std::abs(point.height) <= reach[pair] &&
-                  point.overhang <= tolerance * overhang[pair] && point.normal * slave_normal <= far_side_cosine;
+    point.found = point.found && std::abs(point.height) <= reach[pair] && point.overhang <= part * overhang[pair] &&
+                  point.normal * slave_normal <= far_side_cosine;
     return point;
   }
 

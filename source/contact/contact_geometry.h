@@ -5,6 +5,7 @@
 
 #include <deal.II/base/bounding_box.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -25,13 +26,23 @@ namespace Nodus
   class MasterSearch
   {
   public:
-    explicit MasterSearch(const SurfaceGeometry &master);
+    /// @p tolerance: how far points with a partner may be beyond the rim [faces].
+    MasterSearch(const SurfaceGeometry &master, double tolerance);
     ~MasterSearch();
     MasterSearch(MasterSearch &&) noexcept;
 
     /// Closest master point of @p p within @p reach that does not look the way of @p slave_normal (the far side of a
-    /// body). A point beyond the rim of the surface by more than @p tolerance face sizes has none.
-    Projection closest(const Point &p, const Vector3 &slave_normal, double reach, double tolerance) const;
+    /// body). A point beyond the rim of the surface by more than @p part of what is tolerated has none.
+    Projection closest(const Point &p, const Vector3 &slave_normal, double reach, double part = 1.) const;
+
+    /// How far @p p is beyond the rim of the surface, of which @p closest is the nearest point: along the surface, over
+    /// what is tolerated. Zero elsewhere.
+    Vector3 overhang(const Projection &closest, const Point &p) const;
+    /// What is tolerated at a master face [length].
+    double tolerated_overhang(const unsigned int face) const
+    {
+      return tolerance_ * size_[face];
+    }
 
     /// Faces whose bounding boxes meet @p box, in ascending order.
     void candidates(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &faces) const;
@@ -39,6 +50,7 @@ namespace Nodus
   private:
     struct Tree;
     const SurfaceGeometry           &master_;
+    const double                     tolerance_; ///< of the overhang [faces]
     std::unique_ptr<Tree>            tree_;
     std::vector<std::array<bool, 4>> on_rim_;        ///< edges xi = 0, 1, eta = 0, 1 that no other face shares
     std::vector<Vector3>             centre_normal_; ///< outward
@@ -52,10 +64,15 @@ namespace Nodus
                     const ContactSurfaces                    &surfaces,
                     const std::vector<Point>                 &positions);
 
-    /// Point of a rigid master that is a partner of @p p, by the same rules as those of MasterSearch. @p tolerance:
-    /// over that of the pair.
-    RigidPoint
-    closest_on_rigid(unsigned int pair, const Point &p, const Vector3 &slave_normal, double tolerance = 1.) const;
+    /// Part of a point of a fixed rule that counts where it is beyond the rim by @p overhang, over what is tolerated:
+    /// it fades out, so that nothing jumps where it goes (eq. J7).
+    static double counted_part(const double overhang)
+    {
+      return std::max(0., 1. - overhang * fading);
+    }
+    static constexpr double fading = 2.;
+    /// Point of a rigid master that is a partner of @p p, by the same rules as those of MasterSearch.
+    RigidPoint closest_on_rigid(unsigned int pair, const Point &p, const Vector3 &slave_normal, double part = 1.) const;
     /// Position of a site.
     Point position(const ContactSurfaces &surfaces, unsigned int site) const;
 

@@ -19,6 +19,7 @@ namespace Nodus
       , current_(current)
       , slave_(geometry.slave[face.pair])
       , master_(geometry.master[face.pair])
+      , search_(geometry.search[face.pair])
       , rigid_(geometry.rigid[face.pair])
       , part_(face.dual_part())
       , plain_(part_ == 1. && slave_.face(face.face).basis.empty())
@@ -113,16 +114,16 @@ namespace Nodus
   void FaceVariation::add_vector_field(const unsigned int column, const Vector3 &value, const Vector3 *const d)
   {
     for (unsigned int c = 0; c < dim; ++c)
-      fields_.push_back({column + c, value[c], {d[0][c], d[1][c], d[2][c], d[3][c]}});
+      batch_.fields.push_back({column + c, value[c], {d[0][c], d[1][c], d[2][c], d[3][c]}});
   }
 
   void FaceVariation::make_fields(const MortarPoint &point, const FaceShape &shape)
   {
-    fields_.clear();
+    batch_.fields.clear();
     for (unsigned int b = 0; b < shape.n && !plain_; ++b)
-      fields_.push_back({b, shape.value[b], {shape.d_xi[b], shape.d_eta[b], 0., 0.}});
+      batch_.fields.push_back({b, shape.value[b], {shape.d_xi[b], shape.d_eta[b], 0., 0.}});
     if (!plain_)
-      fields_.push_back({area(), 1., {0., 0., 0., 0.}});
+      batch_.fields.push_back({area(), 1., {0., 0., 0., 0.}});
     Vector3 value, d[4]; // of the offset
     if (slave_.smoothed())
     {
@@ -145,7 +146,7 @@ namespace Nodus
     const auto [f, xi, eta] = point.master;
     const FaceShape shape(master_.degree(), xi, eta);
     for (unsigned int b = 0; b < shape.n; ++b)
-      fields_.push_back(
+      batch_.fields.push_back(
           {weight(local_.place[local_.n_slave + b]), -shape.value[b], {0., 0., -shape.d_xi[b], -shape.d_eta[b]}});
     if (!master_.smoothed())
       return;
@@ -163,12 +164,12 @@ namespace Nodus
     {
       const RigidCarrier::Weights weights = carrier->weights(closest.x);
       for (unsigned int b = 0; b < weights.size(); ++b)
-        fields_.push_back({weight(local_.place[local_.n_slave + b]),
-                           -weights[b],
-                           {0.,
-                            0.,
-                            -(carrier->gradients()[b] * closest.direction[0]),
-                            -(carrier->gradients()[b] * closest.direction[1])}});
+        batch_.fields.push_back({weight(local_.place[local_.n_slave + b]),
+                                 -weights[b],
+                                 {0.,
+                                  0.,
+                                  -(carrier->gradients()[b] * closest.direction[0]),
+                                  -(carrier->gradients()[b] * closest.direction[1])}});
       return;
     }
     const RigidPart part = rigid_->part(closest.x);
@@ -190,7 +191,7 @@ namespace Nodus
     const Nodal        phi      = of_slaves(shape.value);
     const Nodal        d_phi[2] = {of_slaves(shape.d_xi), of_slaves(shape.d_eta)};
     const unsigned int m = phi.size(), n_mass = m * (m + 1) / 2,
-                       n_rows = n_mass + (part_ < 1. ? 2 : 1) * m * fields_.size();
+                       n_rows = n_mass + (part_ < 1. ? 2 : 1) * m * batch_.fields.size();
     if (batch_.n_points == 0)
       batch_.coefficients.resize(n_rows, 0);
     // matrices keep their memory
@@ -227,7 +228,7 @@ namespace Nodus
                (2. * step);
       };
       const Nodal d_hat[2] = {slope(step, 0.), slope(0., step)};
-      add_products(hat, d_hat, weight, hat_.value, n_mass + m * fields_.size());
+      add_products(hat, d_hat, weight, hat_.value, n_mass + m * batch_.fields.size());
       add_parts(point, hat, weight, hat_.parts);
     }
     ++batch_.n_points;
@@ -237,7 +238,7 @@ namespace Nodus
       const Nodal &test, const Nodal *const d_test, const double weight, Matrix &value, unsigned int row)
   {
     for (unsigned int a = 0; a < test.size(); ++a)
-      for (const Field &f : fields_)
+      for (const Field &f : batch_.fields)
       {
         const double t = weight * test[a];
         value(a, f.column) += t * f.value;
@@ -291,7 +292,7 @@ namespace Nodus
     for (Matrix *const to : {&phi_.derivative, &hat_.derivative})
       if (to == &phi_.derivative || part_ < 1.)
         for (unsigned int a = 0; a < m; ++a)
-          for (const Field &f : fields_)
+          for (const Field &f : batch_.fields)
             scatter(from++, *to, a * n_columns_ + f.column);
     batch_.n_points = 0;
   }

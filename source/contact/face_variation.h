@@ -16,8 +16,8 @@ namespace Nodus
   /// functions and the covered part change (eq. G19-G27). Exact for the discrete integrals, but for
   /// - points that smoothing shifts along the surfaces as these bend, which would couple every force with two rings of
   ///   nodes on both sides (the offsets themselves are in, by parts());
-  /// - the covered part of faces that stick out of the master and are integrated by a fixed rule: it jumps with its
-  ///   points, and the change of their areas is not in it either;
+  /// - the covered part of faces that stick out of the master and are integrated by a fixed rule: it follows the points
+  ///   at the rim, not the change of areas; on rigid triangles not at all;
   /// - normals that are averaged over the face (AveragedJump::Row::normal).
   class FaceVariation
   {
@@ -107,8 +107,9 @@ namespace Nodus
     /// Products at the points since the last flush: what multiplies the motions of the points, and these.
     struct Batch
     {
-      Matrix       coefficients, gradients, product;
-      unsigned int n_points = 0;
+      std::vector<Field> fields; ///< of the point at hand
+      Matrix             coefficients, gradients, product;
+      unsigned int       n_points = 0;
     };
     /// Integrals over the face by slave node and column, their derivatives by slave node times column and node, and
     /// integrals of the functions of the parts.
@@ -126,6 +127,7 @@ namespace Nodus
     template <int columns>
     void add_segments();
     void add_fixed_points();
+    void fade_out(const MortarPoint &point, const FaceShape &shape, Gradient &gradient);
     void add_point(const MortarPoint &point, const Eigen::Ref<const AnyGradient> &gradient);
     void make_fields(const MortarPoint &point, const FaceShape &shape);
     void make_meshed_fields(const MortarPoint &point, Vector3 &offset, Vector3 *d_offset);
@@ -139,7 +141,7 @@ namespace Nodus
                                             const SegmentTrace::Place   &place,
                                             const MortarPoint           &point,
                                             const SegmentFrame<columns> &frame);
-    Gradient               fixed_gradient(const MortarPoint &point) const;
+    Gradient               fixed_gradient(const MortarPoint &point);
     template <typename Element, typename Motion>
     Element element_gradient(const FaceShape &shape, double xi, double eta, const Motion &motion) const;
     Row     fixed_element_gradient(const FaceShape &shape, double xi, double eta) const;
@@ -153,6 +155,7 @@ namespace Nodus
     const std::vector<Point> &measure_;
     const bool                current_;
     const SurfaceGeometry    &slave_, &master_;
+    const MasterSearch       &search_;
     const RigidSurface *const rigid_;
     const double              part_;
     const bool                plain_; ///< dual functions alone, no hanging node: the slave part is the node itself
@@ -160,7 +163,6 @@ namespace Nodus
     std::vector<unsigned int> nodes_, parts_, master_faces_;
     unsigned int              n_columns_ = 0, first_ = 0; ///< first_ that the points contribute to
     Local                     local_;
-    std::vector<Field>        fields_;
     Batch                     batch_;
     Integrals                 mass_, phi_, hat_, exact_; ///< of phi phi^T, of columns times phi and hats, of phi
     Matrix                    d_coverage_, part_weight_, result_;

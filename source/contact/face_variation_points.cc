@@ -283,7 +283,8 @@ namespace Nodus
 
   void FaceVariation::add_fixed_points()
   {
-    unsigned int at = static_cast<unsigned int>(-1);
+    unsigned int at      = static_cast<unsigned int>(-1);
+    double       covered = 0.;
     for (const MortarPoint &point : face_.points)
     {
       if (batch_.n_points == 0 || point.master.face != at)
@@ -293,11 +294,35 @@ namespace Nodus
         number_local(at);
       }
       add_point(point, fixed_gradient(point));
+      covered += point.weight * slave_.at(face_.face, point.xi, point.eta).area_vector().norm();
     }
     flush();
+    d_coverage_ *= face_.coverage / covered;
   }
 
-  FaceVariation::Gradient FaceVariation::fixed_gradient(const MortarPoint &point) const
+  /// The weight of a point beyond the rim of the master goes with its overhang, and with that the covered part.
+  void FaceVariation::fade_out(const MortarPoint &point, const FaceShape &shape, Gradient &gradient)
+  {
+    const FaceGeometry x        = slave_.at(face_.face, point.xi, point.eta);
+    const Vector3      beyond   = search_.overhang(point.master, x.x);
+    const double       overhang = beyond.norm();
+    if (!(overhang > 0.))
+      return;
+    const FaceShape master_shape(master_.degree(), point.master.xi, point.master.eta);
+    const double    rate   = ContactGeometry::fading / ContactGeometry::counted_part(overhang);
+    const auto      slope  = eigen(-rate / (search_.tolerated_overhang(point.master.face) * overhang) * beyond);
+    Row             fading = Row::Zero(1, gradient.cols());
+    for (unsigned int n = 0; n < shape.n; ++n)
+      fading.segment<3>(3 * n) += shape.value[n] * slope;
+    for (unsigned int n = 0; n < master_shape.n; ++n)
+      fading.segment<3>(3 * (local_.n_slave + n)) -= master_shape.value[n] * slope;
+    gradient.row(0) += fading;
+    for (unsigned int l = 0; l < local_.size(); ++l)
+      d_coverage_.middleCols<3>(3 * local_.place[l]) +=
+          point.weight * x.area_vector().norm() * fading.segment<3>(3 * l);
+  }
+
+  FaceVariation::Gradient FaceVariation::fixed_gradient(const MortarPoint &point)
   {
     const FaceShape shape(slave_.degree(), point.xi, point.eta);
     const Point     p      = slave_.at(face_.face, point.xi, point.eta).x;
@@ -324,6 +349,7 @@ namespace Nodus
       }
       return result;
     }
+    fade_out(point, shape, result);
     const ProjectionGradient gradient(master_, point.master, p);
     for (unsigned int i = 0; i < 2; ++i)
     {

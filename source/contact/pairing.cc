@@ -173,8 +173,7 @@ namespace Nodus
       if (geometry.rigid[p] != nullptr)
         rigid = geometry.closest_on_rigid(p, sites.x[s], sites.normal[s], tolerance);
       else
-        pairing.master = geometry.search[p].closest(
-            sites.x[s], sites.normal[s], geometry.reach[p], tolerance * pairs[p].projection_tolerance);
+        pairing.master = geometry.search[p].closest(sites.x[s], sites.normal[s], geometry.reach[p], tolerance);
       partnered_[s]       = rigid.found || pairing.master.found();
       const bool averages = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
       const bool paired   = averages ? averaged.covered(s) : pairing.master.found() || rigid.found;

@@ -1,5 +1,7 @@
 // Rows of the jump operator where a slave node passes over an edge between two faces of a curved master, on smoothed
-// surfaces and with friction: the weights that balance moments do not jump there (eq. J4, J5 with the shares J6).
+// surfaces and with friction: the weights that balance moments do not jump there (eq. J4, J5 with the shares J6), nor
+// does the normal, of facets either (eq. P5). Averages of a fixed rule whose points go over the rim of the master,
+// which do not jump either (eq. J7).
 
 #include "../contact_fixture.h"
 
@@ -23,7 +25,7 @@ namespace
     return result;
   }
 
-  void pass(const std::string &name, const unsigned int degree, const bool hanging)
+  void pass(const std::string &name, const unsigned int degree, const bool hanging, const Pair::Normal normal)
   {
     std::vector<BodyParameters> bodies{box("lower", "4,4,1", {-1, -1, -1}, {1, 1, 0}, 1, 0),
                                        box("upper", "1,1,1", {-0.5, -0.5, 0}, {0.5, 0.5, 1}, 1, 0)};
@@ -35,7 +37,7 @@ namespace
     Pair p                 = pair(region(2, {z_minus}), region(1, {z_plus}));
     p.scheme               = Pair::Scheme::nodal;
     p.surface              = Pair::Surface::smoothed;
-    p.normal               = Pair::Normal::averaged;
+    p.normal               = normal;
     p.friction_coefficient = 0.3;
     ContactFixture    fixture(bodies, {p}, degree);
     auto             &x = fixture.state.x;
@@ -71,7 +73,8 @@ namespace
       (go_to(middle) == first ? low : high) = middle;
     }
     go_to(low);
-    const auto before = row(fixture, 0);
+    const auto    before        = row(fixture, 0);
+    const Vector3 normal_before = fixture.pairing[0].normal;
     go_to(high);
     auto   after   = row(fixture, 0);
     double largest = 0., change = 0.;
@@ -88,13 +91,57 @@ namespace
     }
     report(name + ": change across an edge, of a largest entry of " + Numbers::number(largest, 3),
            Numbers::error_below(change, 1e-4, 2));
+    report(name + ": change of the normal",
+           Numbers::error_below((fixture.pairing[0].normal - normal_before).norm(), 1e-4, 2));
+  }
+
+  /// A face that moves over the rim of the master by steps of 1e-4 faces. Points fade out over 0.025 faces, so that a
+  /// row may change by some 40 times as much; a column of points that goes at once would change it by a tenth.
+  void leave(const std::string &name, const unsigned int degree)
+  {
+    const std::vector<BodyParameters> bodies{box("lower", "2,2,1", {-1, -1, -1}, {1, 1, 0}, 1, 0),
+                                             box("upper", "1,1,1", {-0.5, -0.5, 0}, {0.5, 0.5, 1}, 1, 0)};
+    Pair                              p = pair(region(2, {z_minus}), region(1, {z_plus}));
+    p.scheme                            = Pair::Scheme::averaged;
+    p.integration                       = Pair::Integration::face;
+    ContactFixture    fixture(bodies, {p}, degree);
+    auto             &x     = fixture.state.x;
+    const auto        start = x;
+    std::vector<bool> is_slave(x.size(), false);
+    for (const SlaveNode &k : fixture.surfaces->slave_nodes())
+      is_slave[k.node] = true;
+    double                                        change = 0., least = 1.;
+    const double                                  whole = fixture.averaged.row(0).whole;
+    std::map<unsigned int, std::array<double, 4>> before;
+    for (unsigned int step = 0; step <= 4000; ++step)
+    {
+      for (unsigned int i = 0; i < x.size(); ++i)
+        if (is_slave[i])
+          x[i] = start[i] + Vector3({-0.45 - 1e-4 * step, 0., 0.01});
+      fixture.pair_at(x);
+      auto after = row(fixture, 0);
+      after[-1u] = {{fixture.averaged.row(0).area / whole, 0., 0., 0.}};
+      least      = std::min(least, after[-1u][0]);
+      for (const auto &[node, values] : after)
+        if (step > 0)
+          change = std::max(change, std::abs(values[0] - (before.count(node) > 0 ? before[node][0] : 0.)));
+      before = std::move(after);
+    }
+    report(name + ": least covered part around the first node", Numbers::number(least, 2));
+    report(name + ": largest change of weights and covered part in a step", Numbers::error_below(change, 5e-3, 2));
   }
 } // namespace
 
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  pass("degree 1", 1, false);
-  pass("degree 1, hanging nodes", 1, true);
-  pass("degree 2", 2, false);
+  using Normal = Pair::Normal;
+  pass("degree 1", 1, false, Normal::averaged);
+  pass("degree 1, hanging nodes", 1, true, Normal::averaged);
+  pass("degree 2", 2, false, Normal::averaged);
+  pass("degree 1, normals of facets", 1, false, Normal::master_facet);
+  pass("degree 1, hanging nodes, normals of facets", 1, true, Normal::master_facet);
+  pass("degree 2, normals of facets", 2, false, Normal::master_facet);
+  leave("degree 1, points that leave the master", 1);
+  leave("degree 2, points that leave the master", 2);
 }

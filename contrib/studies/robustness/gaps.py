@@ -102,11 +102,9 @@ class Pair:
             return rows
         if self.keys["Scheme"] == "averaged":
             if self.keys.get("Integration", "segment") == "face":
-                self._averaged(rows, self._face_points(TOLERANCE, 0, False), found, over, choices, preferred)
-                # single precision does not tell whether points at the rim have a partner, and on which of two faces
-                for change, last in ((1e-4, False), (-1e-4, False), (0, True)):
-                    points = self._face_points((1 + change) * TOLERANCE, max(change * TOLERANCE, 0), last)
-                    rows.others.append(self._averaged(self._empty(), points, found, over, choices, preferred))
+                self._averaged(rows, self._face_points(False), found, over, choices, preferred)
+                # single precision does not tell on which of two faces a point is
+                rows.others.append(self._averaged(self._empty(), self._face_points(True), found, over, choices, preferred))
                 return rows
             # hats and warped faces are integrated by no rule exactly: other triangles and a finer rule show how much is left
             overlaps = Segments(self.slave, self.master, self.reach)
@@ -173,19 +171,16 @@ class Pair:
         distance[hit] = (apart * normal[hit]).sum(1)
         return distance, f, xi, eta, w * self.slave.element(f, xi, eta), face >= 0, (face >= 0) & (over > 0.9 * TOLERANCE), normal
 
-    def _face_points(self, tolerance, rim, last):
-        """Points of a fixed rule on all faces that have some, and the covered fraction of each face. Points may hang over the rim by
-        a tolerance if some of the face do so by no more than `rim`."""
+    def _face_points(self, last):
+        """Points of a fixed rule, which fade out beyond the rim (J7), and the covered fraction of each face."""
         rule = "Gauss", 6 if self.degree == 1 else 10
-        f, s, t, w, m, a, b, over = self.points(*rule, tolerance, last)
+        f, s, t, w, m, a, b, over = self.points(*rule, TOLERANCE, last)
         _, t1, t2 = self.slave.at(f, s, t)
-        part = w * np.linalg.norm(np.cross(t1, t2), axis=1)
-        coverage = np.bincount(f, part * (m >= 0), len(self.faces)) / np.bincount(f, part, len(self.faces))
-        inside = np.zeros(len(self.faces), bool)  # a face with nothing but overhang has no points
-        inside[f[(m >= 0) & (over <= rim)]] = True
-        coverage[~inside] = 0
-        keep = (m >= 0) & inside[f]
-        return [v[keep] for v in (f, s, t, w, m, a, b)] + [coverage]
+        whole = w * np.linalg.norm(np.cross(t1, t2), axis=1)
+        counts = np.where(m >= 0, np.maximum(0, 1 - 2 * over / TOLERANCE), 0)
+        coverage = np.bincount(f, whole * counts, len(self.faces)) / np.bincount(f, whole, len(self.faces))
+        keep = counts > 0
+        return [v[keep] for v in (f, s, t, w * counts, m, a, b)] + [coverage]
 
     def _averaged(self, rows, points, found, over, choices, preferred):
         """(J1) to (J4). Nodes that have a closest point themselves take the normal there: one of choices (site, normal)."""
