@@ -209,8 +209,8 @@ namespace Nodus
   {
     if (!refinable_)
       return;
-    refinable_->signals.weight.connect(
-        [weight](const Triangulation::cell_iterator &cell, const Triangulation::CellStatus) { return weight(cell); });
+    refinable_->signals.weight.connect([weight](const Triangulation::cell_iterator &cell, const auto /*status*/)
+                                       { return weight(cell); });
     refinable_->repartition();
   }
 

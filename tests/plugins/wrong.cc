@@ -28,6 +28,12 @@ namespace
     {
       prm.enter_subsection("left open");
     }
+#elif MISTAKE == 8
+    void add_parameters(dealii::ParameterHandler &prm) override
+    {
+      prm.add_parameter("Modulus", modulus_, "A key that only cases with this law have [pressure].");
+    }
+    double modulus_ = 1.;
 #endif
   };
 } // namespace

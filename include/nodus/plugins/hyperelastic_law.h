@@ -3,13 +3,13 @@
 
 #include <nodus/plugins/material_law.h>
 
-#ifndef DEAL_II_TRILINOS_WITH_SACADO
-#  error HyperelasticLaw differentiates with Sacado: deal.II with Trilinos and its package Sacado is needed (MaterialLaw does without)
-#endif
+#include <type_traits>
 
-#include <deal.II/differentiation/ad/sacado_product_types.h>
+#ifdef DEAL_II_TRILINOS_WITH_SACADO
 
-#include <Sacado.hpp>
+#  include <deal.II/differentiation/ad/sacado_product_types.h>
+
+#  include <Sacado.hpp>
 
 // deal.II knows tensors of Sacado's numbers whose length is found at run time; these are faster.
 namespace dealii
@@ -129,4 +129,20 @@ namespace Nodus
   };
 } // namespace Nodus
 
+#else
+
+namespace Nodus
+{
+  /// Without Sacado: the header can be included, the class not be used.
+  template <typename Law>
+  class HyperelasticLaw : public MaterialLaw
+  {
+    static_assert(
+        !std::is_same_v<Law, Law>,
+        "HyperelasticLaw differentiates with Sacado, a package of Trilinos, which this deal.II is without: derive "
+        "from MaterialLaw");
+  };
+} // namespace Nodus
+
+#endif
 #endif
