@@ -38,10 +38,11 @@ namespace Nodus
       stream_ << text << std::endl;
   }
 
-  void Console::begin_increment(const unsigned int increment, const double begin, const double end)
+  void Console::begin_increment(const unsigned int increment, const double begin, const double end, const double arc)
   {
     line("");
-    line(format("Increment %u, t = %g to %g", increment, begin, end));
+    line(arc > 0. ? format("Increment %u, from t = %g, arc length %g", increment, begin, arc)
+                  : format("Increment %u, t = %g to %g", increment, begin, end));
     line("  geometry threshold status Newton |      force    contact | Krylov");
   }
 

@@ -20,8 +20,8 @@ namespace Nodus
 
     void line(const std::string &text);
 
-    /// Of the increment from time @p begin to time @p end.
-    void begin_increment(unsigned int increment, double begin, double end);
+    /// Of the increment from time @p begin to time @p end, or by the length @p arc where that is not 0.
+    void begin_increment(unsigned int increment, double begin, double end, double arc = 0.);
     /// One row of the iteration table: loop counters side by side, norms, Krylov iterations.
     void newton_iteration(const IterationCounts      &pass,
                           unsigned int                iteration,

@@ -79,6 +79,7 @@ namespace Nodus
     const DoFHandler<dim> &dof_handler;
     const Mapping<dim>    &mapping;
     const SolidAssembler  &solid;
+    bool                   by_increment;
 
     MPI_Comm     communicator = communicator_of(bodies.triangulation());
     unsigned int rank         = Utilities::MPI::this_mpi_process(communicator);
@@ -226,7 +227,7 @@ namespace Nodus
   {
     const std::string stem = series + '_' + Utilities::int_to_string(increment, 4);
     write_pieces(stem, output);
-    written[series].emplace_back(t, main_file(stem));
+    written[series].emplace_back(by_increment ? increment : t, main_file(stem));
     throw_everywhere<InputError>(rank == 0 ? write_record(series) : "", communicator);
   }
 
@@ -241,8 +242,9 @@ namespace Nodus
                        const Bodies          &bodies,
                        const DoFHandler<dim> &dof_handler,
                        const Mapping<dim>    &mapping,
-                       const SolidAssembler  &solid)
-      : implementation_(new Implementation{folder, bodies, dof_handler, mapping, solid})
+                       const SolidAssembler  &solid,
+                       const bool             by_increment)
+      : implementation_(new Implementation{folder, bodies, dof_handler, mapping, solid, by_increment})
   {
   }
 

@@ -24,11 +24,13 @@ namespace Nodus
   class VtuOutput
   {
   public:
+    /// @p by_increment: the series go by the number of the increment, where time goes back.
     VtuOutput(const std::string             &folder,
               const Bodies                  &bodies,
               const dealii::DoFHandler<dim> &dof_handler,
               const dealii::Mapping<dim>    &mapping,
-              const SolidAssembler          &solid);
+              const SolidAssembler          &solid,
+              bool                           by_increment);
     ~VtuOutput();
 
     /// @p u has ghost entries. Collective. @throws InputError when the folder cannot be written.
@@ -50,7 +52,7 @@ namespace Nodus
     /// The file to open then.
     std::string state_file(const std::string &name) const;
 
-    /// (time, file) of what was written so far, by the name of the series.
+    /// (time or number, file) of what was written so far, by the name of the series.
     using Series = std::map<std::string, std::vector<std::pair<double, std::string>>>;
     const Series &series() const;
     /// Writes the time series as they were when they had these files. Collective. @throws InputError as write().

@@ -205,6 +205,43 @@ namespace Nodus
                       "is larger than Maximum increment; lower it");
     }
 
+    /// What time alone can be given for.
+    void check_arc_length(const ParameterFile &file, const Parameters &p)
+    {
+      using Overclosure                  = ContactPairParameters::InitialOverclosure;
+      const LoadSteppingParameters &load = p.load_stepping;
+      const Section                 section{file, "Load stepping"};
+      section.require(load.control.size() == 1 || load.control.size() == load.interval_ends.size(),
+                      "Control",
+                      "has " + std::to_string(load.control.size()) + " entries for " +
+                          std::to_string(load.interval_ends.size()) +
+                          " entries of Interval ends; give one for all intervals, or one for each");
+      if (!load.has_arc_length())
+        return;
+      section.require(load.viscous_stabilisation == 0.,
+                      "Viscous stabilisation",
+                      "resists motions in time, which goes back under 'Control = arc length'; remove it, and hold the "
+                      "bodies by conditions or springs that are 'Active until' the end of an interval before");
+      Section{file, "Adaptivity"}.require(p.adaptivity.interval == 0 && p.adaptivity.repetitions == 0,
+                                          p.adaptivity.interval > 0 ? "Interval" : "Repetitions",
+                                          "and 'Load stepping/Control = arc length' do not go together: what has not "
+                                          "been in equilibrium on a mesh has no branch there; refine with 'Initial "
+                                          "cycles' or the bodies' refinement instead");
+      for (unsigned int i = 0; i < p.contact_pairs.size(); ++i)
+      {
+        const Section                pair{file, "Contact pair " + std::to_string(i + 1)};
+        const ContactPairParameters &parameters = p.contact_pairs[i];
+        pair.require(!is_given(parameters.master_surface.motion),
+                     "Master translation",
+                     "or rotation moves a surface at given times, which arc length cannot find; let a rigid body carry "
+                     "the surface, with 'Master body', 'Rigid translation' or 'Rigid free' and 'Rigid force'");
+        pair.require(parameters.start.overclosure != Overclosure::interference || !load.has_arc_length(0),
+                     "Initial overclosure",
+                     "is pressed out in the course of the first interval, which must have 'Load stepping/Control = "
+                     "time': put one before, 'Control = time, arc length'");
+      }
+    }
+
     /// @p level: of the finest cells of any body before.
     void check(const Section &section, const AdaptivityParameters &adaptivity, const std::uint64_t level)
     {
@@ -303,6 +340,7 @@ namespace Nodus
 
     Nodus::check({file, "Linear solver"}, linear_solver);
     Nodus::check({file, "Load stepping"}, load_stepping);
+    check_arc_length(file, *this);
     std::uint64_t level = 0;
     for (const BodyParameters &body : bodies)
       level = std::max(level, std::uint64_t(body.global_refinement) + body.local_refinement);

@@ -4,6 +4,8 @@
 #include <nodus/parameters/parameters.h>
 #include <nodus/plugins/error_indicator.h>
 
+#include <deal.II/base/utilities.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -38,6 +40,9 @@ namespace Nodus
         {LinearSolverParameters::Preconditioner::nodus, "nodus"},
         {LinearSolverParameters::Preconditioner::ml, "ML"},
         {LinearSolverParameters::Preconditioner::muelu, "MueLu"}};
+
+    const Names<LoadSteppingParameters::Control> control_names = {
+        {LoadSteppingParameters::Control::time, "time"}, {LoadSteppingParameters::Control::arc_length, "arc length"}};
 
     const Names<AdaptivityParameters::Indicator> indicator_names = {
         {AdaptivityParameters::Indicator::stress_and_contact, "stress and contact"}};
@@ -134,6 +139,39 @@ namespace Nodus
                         Patterns::List(Patterns::Selection(names), 0, remedy_names.size(), ","));
     }
 
+    /// What finds the time of the increments, and what that needs.
+    void add_control(ParameterHandler &prm, LoadSteppingParameters &load)
+    {
+      std::string controls;
+      for (const auto control : load.control)
+        controls += (controls.empty() ? "" : ", ") + text_of(control, control_names);
+      prm.declare_entry("Control",
+                        controls,
+                        Patterns::List(Patterns::Selection(selection(control_names)), 1, 1000000, ","),
+                        "What an increment is given [-], for all intervals or for each: time, or arc length, a motion "
+                        "along that of the increment before. Then the time t of all loads and prescribed motions is "
+                        "found with the equilibrium: it goes back beyond limit points, where bodies snap through or "
+                        "back, and equilibria that are not stable are followed. The first increment of an interval is "
+                        "given the time that Increments says; the interval ends where t comes to its end.");
+      prm.add_action("Control",
+                     [&load](const std::string &text)
+                     {
+                       load.control.clear();
+                       for (const auto &name : dealii::Utilities::split_string_list(text, ','))
+                         load.control.push_back(value_of(name, control_names));
+                     });
+      prm.add_parameter("Arc length",
+                        load.arc_length,
+                        "Under arc length: how far the node that moves most goes in an increment, as long as the "
+                        "motion stays the same [length]; 0: as far as in the first increment of the interval. Where "
+                        "increments fail it is halved, up to 1/64, and it grows back after easy ones.",
+                        not_negative);
+      prm.add_parameter("Maximum increments",
+                        load.maximum_increments,
+                        "Under arc length: increments of an interval after which a run is given up [-].",
+                        at_least_one);
+    }
+
     void add(ParameterHandler &prm, LoadSteppingParameters &load)
     {
       const unsigned int many = std::numeric_limits<unsigned int>::max();
@@ -169,6 +207,7 @@ namespace Nodus
           "Dashpots at all nodes for bodies that nothing holds before contact closes, relative to the "
           "stiffness of the body, e.g. 1e-2; they fade in the course of each interval and are reported [-].",
           not_negative);
+      add_control(prm, load);
     }
 
     void add(ParameterHandler &prm, AdaptivityParameters &adaptivity)
@@ -278,6 +317,16 @@ namespace Nodus
   bool StrategyParameters::uses(const Remedy remedy) const
   {
     return std::find(without.begin(), without.end(), remedy_names[static_cast<unsigned int>(remedy)]) == without.end();
+  }
+
+  bool LoadSteppingParameters::has_arc_length(const unsigned int interval) const
+  {
+    return control[std::min<std::size_t>(interval, control.size() - 1)] == Control::arc_length;
+  }
+
+  bool LoadSteppingParameters::has_arc_length() const
+  {
+    return std::find(control.begin(), control.end(), Control::arc_length) != control.end();
   }
 
   std::string text_of(const LoopParameters::Mode mode)

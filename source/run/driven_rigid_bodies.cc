@@ -132,30 +132,47 @@ namespace Nodus
     }
   }
 
-  DrivenRigidBodies::Equations DrivenRigidBodies::equations(const LinearSystem &system) const
+  std::vector<double> DrivenRigidBodies::resultants(const Vector &forces) const
   {
     const RigidBodies  &rigid_bodies = model_.rigid_bodies;
-    const unsigned int  n            = n_components * rigid_bodies.size();
-    std::vector<double> sum(n);
-    Equations           e{dealii::FullMatrix<double>(n, n),
-                dealii::Vector<double>(n),
-                dealii::Vector<double>(n),
-                dealii::Vector<double>(n),
-                {}};
-    dealii::Utilities::MPI::sum(system.border_rhs, model_.communicator, sum);
+    const Vector       &u            = states_.now.unknowns.block(0);
+    std::vector<double> sums(n_components * rigid_bodies.size(), 0.);
+    for (unsigned int b = 0; b < rigid_bodies.size(); ++b)
+    {
+      const Point centre = rigid_bodies.centre(b);
+      for (const RigidBodies::Node &node : rigid_bodies.nodes(b))
+      {
+        Vector3 arm = node.X - centre, force;
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          arm[c] += u(node.dof + c);
+          force[c] = forces(node.dof + c);
+        }
+        const Vector3 moment = dealii::cross_product_3d(arm, force);
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          sums[n_components * b + c] += force[c];
+          sums[n_components * b + dim + c] += moment[c];
+        }
+      }
+    }
+    return sums;
+  }
+
+  DrivenRigidBodies::Equations DrivenRigidBodies::equations() const
+  {
+    const RigidBodies &rigid_bodies = model_.rigid_bodies;
+    const unsigned int n            = n_components * rigid_bodies.size();
+    Equations          e{dealii::FullMatrix<double>(n, n), dealii::Vector<double>(n), {}};
     for (unsigned int i = 0; i < rigid_bodies.size(); ++i)
     {
-      const auto spin    = rigid_bodies.spin(i);
-      const auto missing = rigid_bodies.missing(i);
+      const auto spin = rigid_bodies.spin(i);
       for (unsigned int c = 0; c < n_components; ++c)
       {
         const unsigned int first = n_components * i;
-        e.force(first + c)       = sum[first + c] + rigid_bodies.load(i)[c];
         e.scale(first + c)       = c < dim ? 1. : 1. / rigid_bodies.extent(i);
         for (unsigned int d = 0; d < n_components; ++d)
           e.components(first + d, first + c) = c < dim || d < dim ? (c == d ? 1. : 0.) : spin[d - dim][c - dim];
-        for (unsigned int d = 0; d < n_components; ++d)
-          e.given(first + d) += e.components(first + d, first + c) * missing[c];
         if (rigid_bodies.is_free(i, c))
           e.rows.push_back(first + c);
       }
@@ -163,15 +180,37 @@ namespace Nodus
     return e;
   }
 
-  LinearSolver::Report DrivenRigidBodies::solve(const LinearSystem &system,
-                                                RescuedSolver      &solver,
-                                                const double        relative_tolerance,
-                                                BlockVector        &correction,
-                                                std::string        &free)
+  BorderedSystem::RightHandSide DrivenRigidBodies::right_hand_side(const Equations           &e,
+                                                                   const BlockVector         &a,
+                                                                   const std::vector<double> &force,
+                                                                   const std::vector<double> &missing) const
   {
-    const RigidBodies         &rigid_bodies = model_.rigid_bodies;
-    const unsigned int         n            = n_components * rigid_bodies.size();
-    const Equations            e            = equations(system);
+    BorderedSystem::RightHandSide rhs{
+        &a, dealii::Vector<double>(missing.size()), dealii::Vector<double>(force.begin(), force.end())};
+    e.components.vmult(rhs.p, dealii::Vector<double>(missing.begin(), missing.end()));
+    return rhs;
+  }
+
+  LinearSolver::Report DrivenRigidBodies::solve(const LinearSystem       &system,
+                                                const TimeRates *const    rates,
+                                                RescuedSolver            &solver,
+                                                const double              relative_tolerance,
+                                                std::vector<BlockVector> &solutions,
+                                                std::string              &free)
+  {
+    const RigidBodies  &rigid_bodies = model_.rigid_bodies;
+    const unsigned int  n            = n_components * rigid_bodies.size();
+    const Equations     e            = equations();
+    std::vector<double> force(n), missing;
+    dealii::Utilities::MPI::sum(system.border_rhs, model_.communicator, force);
+    for (unsigned int i = 0; i < n; ++i)
+    {
+      force[i] += rigid_bodies.load(i / n_components)[i % n_components];
+      missing.push_back(rigid_bodies.missing(i / n_components)[i % n_components]);
+    }
+    std::vector<BorderedSystem::RightHandSide> rhs = {right_hand_side(e, system.rhs, force, missing)};
+    if (rates)
+      rhs.push_back(right_hand_side(e, rates->rhs, rates->rigid_force, rates->rigid_missing));
     dealii::FullMatrix<double> P(n, e.rows.size());
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int j = 0; j < e.rows.size(); ++j)
@@ -180,33 +219,39 @@ namespace Nodus
     bordered.eliminate([&](const std::vector<const BlockVector *> &rhs, std::vector<BlockVector> &x)
                        { return solver.solve(system, rhs, x, std::min(relative_tolerance, response_tolerance)); },
                        P,
-                       e.given,
                        e.rows,
-                       e.force);
+                       rhs);
     if (!bordered.report().null_pivots.empty())
       return bordered.report();
-    const bool                   direct = solver.type() == LinearSolverParameters::Type::direct;
-    const dealii::Vector<double> y =
-        resolve(bordered, e, direct ? free_fraction_direct : free_fraction_iterative, free);
-    if (!free.empty())
-      return bordered.report();
-    bordered.expand(y, correction);
-
-    correction_.assign(n, 0.);
-    for (unsigned int i = 0; i < rigid_bodies.size(); ++i)
+    const double least =
+        solver.type() == LinearSolverParameters::Type::direct ? free_fraction_direct : free_fraction_iterative;
+    solutions.resize(rhs.size());
+    for (unsigned int k = 0; k < rhs.size(); ++k)
     {
-      const auto missing = rigid_bodies.missing(i);
-      std::copy(missing.begin(), missing.end(), correction_.begin() + n_components * i);
+      const dealii::Vector<double> y = resolve(bordered, k, rhs[k], e, least, free);
+      if (!free.empty())
+        return bordered.report();
+      bordered.expand(k, y, solutions[k]);
+      std::vector<double> &components = k == 0 ? correction_ : rate_;
+      components                      = k == 0 ? missing : rates->rigid_missing;
+      for (unsigned int i = 0; i < e.rows.size(); ++i)
+        components[e.rows[i]] = y(i);
     }
-    for (unsigned int i = 0; i < e.rows.size(); ++i)
-      correction_[e.rows[i]] = y(i);
     return bordered.report();
   }
 
-  dealii::Vector<double> DrivenRigidBodies::resolve(const BorderedSystem &bordered,
-                                                    const Equations      &e,
-                                                    const double          free_fraction,
-                                                    std::string          &free)
+  void DrivenRigidBodies::add_time(const double step)
+  {
+    for (unsigned int i = 0; i < correction_.size(); ++i)
+      correction_[i] += step * rate_[i];
+  }
+
+  dealii::Vector<double> DrivenRigidBodies::resolve(const BorderedSystem                &bordered,
+                                                    const unsigned int                   number,
+                                                    const BorderedSystem::RightHandSide &rhs,
+                                                    const Equations                     &e,
+                                                    const double                         free_fraction,
+                                                    std::string                         &free)
   {
     const auto                      &rows  = e.rows;
     const auto                      &scale = e.scale;
@@ -222,12 +267,12 @@ namespace Nodus
     bool         waits   = false;
     const auto   u = S.get_svd_u(), vt = S.get_svd_vt();
     for (const unsigned int row : rows)
-      forces += std::abs(scale(row) * e.force(row));
+      forces += std::abs(scale(row) * rhs.b(row));
     for (unsigned int k = 0; k < rows.size(); ++k)
     {
       double force = 0.;
       for (unsigned int i = 0; i < rows.size(); ++i)
-        force += u(i, k) * scale(rows[i]) * bordered.rhs()(i);
+        force += u(i, k) * scale(rows[i]) * bordered.rhs(number)(i);
       if (S.singular_value(k) > least)
       {
         for (unsigned int j = 0; j < rows.size(); ++j)
@@ -236,7 +281,7 @@ namespace Nodus
       }
       if (!may_wait_for_friction(forces > 0. ? std::abs(force) / forces : 0.))
       {
-        std::vector<double> motion(e.force.size(), 0.);
+        std::vector<double> motion(rhs.b.size(), 0.);
         for (unsigned int j = 0; j < rows.size(); ++j)
           motion[rows[j]] = vt(k, j) * scale(rows[j]);
         free = describe(motion);

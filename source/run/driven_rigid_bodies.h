@@ -11,6 +11,15 @@
 
 namespace Nodus
 {
+  /// How what the corrections solve for changes with time, all else as it is (eq. Z2).
+  struct TimeRates
+  {
+    BlockVector         rhs;           ///< of the unknowns, zero where displacements are prescribed
+    Vector              prescribed;    ///< displacements [length/time]
+    std::vector<double> rigid_force;   ///< six of each driven rigid body, all ranks: out of balance, loads included
+    std::vector<double> rigid_missing; ///< likewise: prescribed components
+  };
+
   /// Rigid bodies that forces and moments drive: their equilibrium, and their part in the correction.
   class DrivenRigidBodies
   {
@@ -36,13 +45,18 @@ namespace Nodus
                 double                length,
                 NewtonProblem::Norms &norms);
 
-    /// The correction of all unknowns; that of the bodies is kept for correction(). @p free: a motion that nothing
-    /// resists, then there is none.
-    LinearSolver::Report solve(const LinearSystem &system,
-                               RescuedSolver      &solver,
-                               double              relative_tolerance,
-                               BlockVector        &correction,
-                               std::string        &free);
+    /// The correction of all unknowns, and with @p rates, which may be null, their change per time; those of the bodies
+    /// are kept for correction(). @p free: a motion that nothing resists, then there are none.
+    LinearSolver::Report solve(const LinearSystem       &system,
+                               const TimeRates          *rates,
+                               RescuedSolver            &solver,
+                               double                    relative_tolerance,
+                               std::vector<BlockVector> &solutions,
+                               std::string              &free);
+    /// The correction goes on by @p step in time.
+    void add_time(double step);
+    /// Force and moment of the @p forces at nodes, six of each body, of this rank.
+    std::vector<double> resultants(const Vector &forces) const;
 
     /// Six components of each body.
     const std::vector<double> &correction() const
@@ -59,23 +73,32 @@ namespace Nodus
     /// The equations of a correction, six per body: the components that are free, and what the others still lack.
     struct Equations
     {
-      dealii::FullMatrix<double> components;   ///< increments of the unknowns as motions
-      dealii::Vector<double>     given;        ///< motion of the prescribed components
-      dealii::Vector<double>     force, scale; ///< scale: for components in units of length
-      std::vector<unsigned int>  rows;         ///< free components
+      dealii::FullMatrix<double> components; ///< increments of the unknowns as motions
+      dealii::Vector<double>     scale;      ///< for components in units of length
+      std::vector<unsigned int>  rows;       ///< free components
     };
-    Equations equations(const LinearSystem &system) const;
-    /// The free components of the correction; motions whose stiffness is below @p free_fraction are free.
-    dealii::Vector<double>
-         resolve(const BorderedSystem &bordered, const Equations &equations, double free_fraction, std::string &free);
-    void add_nodes(LinearSystem &system, const Vector &internal, const Vector &external);
-    bool may_wait_for_friction(double force) const;
-    std::string describe(const std::vector<double> &motion) const;
+    Equations equations() const;
+    /// @p a of the nodes, @p force out of balance and what prescribed components are @p missing, six of each body.
+    BorderedSystem::RightHandSide right_hand_side(const Equations           &equations,
+                                                  const BlockVector         &a,
+                                                  const std::vector<double> &force,
+                                                  const std::vector<double> &missing) const;
+    /// The free components at right-hand side @p k, which is @p rhs; motions whose stiffness is below @p free_fraction
+    /// are free.
+    dealii::Vector<double> resolve(const BorderedSystem                &bordered,
+                                   unsigned int                         k,
+                                   const BorderedSystem::RightHandSide &rhs,
+                                   const Equations                     &equations,
+                                   double                               free_fraction,
+                                   std::string                         &free);
+    void                   add_nodes(LinearSystem &system, const Vector &internal, const Vector &external);
+    bool                   may_wait_for_friction(double force) const;
+    std::string            describe(const std::vector<double> &motion) const;
 
     const Model                         &model_;
     const States                        &states_;
-    std::vector<double>                  correction_;
-    unsigned int                         waits_ = 0; ///< corrections in which some wait for friction
+    std::vector<double>                  correction_, rate_; ///< rate_: its change per time, if that is asked for
+    unsigned int                         waits_ = 0;         ///< corrections in which some wait for friction
     std::vector<RigidBodies::Components> applied_;
   };
 } // namespace Nodus

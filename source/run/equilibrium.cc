@@ -1,6 +1,5 @@
 #include "run/equilibrium.h"
 #include "base/text.h"
-#include "contact/free_motions.h"
 #include "mesh/sides.h"
 #include "parallel/largest.h"
 #include "parallel/owned_values.h"
@@ -9,6 +8,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace Nodus
@@ -34,6 +34,7 @@ namespace Nodus
       , journal_(journal)
       , states_(states)
       , driven_(model, states)
+      , arc_length_(model, states)
   {
   }
 
@@ -69,26 +70,38 @@ namespace Nodus
   void Equilibrium::begin_increment(const Increment &increment)
   {
     increment_ = increment;
-    model_.impose(increment);
+    arc_length_.begin(increment);
+    impose();
     model_.stabilisation->relax(0.);
     unstable_     = false;
     relaxed_work_ = 0.;
     forces_.drag  = 0.;
     motions_unknown_ =
         !increment.on_new_mesh() && increment.begins_interval() && model_.contact->surfaces().n_pairs() > 0;
+    solver_->begin_increment();
+  }
+
+  /// The conditions at the end of the increment.
+  void Equilibrium::impose()
+  {
+    model_.impose(increment_);
     // Where a displacement was prescribed until the interval began, the force that held it goes to zero in it (eq. B4).
     const auto  &constraints = model_.boundary_conditions->homogeneous_constraints();
-    const double rest        = increment.left_to_release(increment.end);
+    const double rest        = increment_.left_to_release(increment_.end);
     for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
       forces_.released(i) = constraints.is_constrained(i) ? 0. : rest * states_.now.reaction(i);
     forces_.released.compress(dealii::VectorOperation::insert);
-    solver_->begin_increment();
   }
 
   void Equilibrium::begin_attempt(const MergedLoops &merged)
   {
     merged_   = merged;
     singular_ = false;
+    if (arc_length_.acts() && increment_.end != increment_.begin) // of the attempt before
+    {
+      increment_.end = increment_.begin;
+      impose();
+    }
     model_.contact->begin_attempt();
   }
 
@@ -221,7 +234,7 @@ namespace Nodus
     forces_.scale    = scale;
     norms.force      = scale > 0. ? largest_entry(forces_.out_of_balance) / scale : 0.;
     norms.contact    = model_.contact->norm(length);
-    norms.prescribed = largest_entry(prescribed) / length;
+    norms.prescribed = std::max(largest_entry(prescribed), std::abs(arc_length_.missing())) / length;
     driven_.add_to(system_, forces_.internal, forces_.external, scale, length, norms);
     return norms;
   }
@@ -237,13 +250,22 @@ namespace Nodus
     const auto timer = journal_.profile.time(Phase::solver_iterations);
     iterate_         = states_.now.unknowns;
     rigid_iterate_   = states_.now.rigid;
-    LinearSolver::Report report;
+    std::optional<TimeRates> rates;
+    if (arc_length_.acts())
+      rates = arc_length_.rates(increment_.end, u_, driven_, merged_.threshold, merged_.geometry);
+    std::vector<BlockVector> solutions; // the correction at this time, and its change per time
+    LinearSolver::Report     report;
     if (model_.rigid_bodies.size() == 0)
-      report = solver_->solve(system_, correction, relative_tolerance);
+    {
+      std::vector<const BlockVector *> rhs = {&system_.rhs};
+      if (rates)
+        rhs.push_back(&rates->rhs);
+      report = solver_->solve(system_, rhs, solutions, relative_tolerance);
+    }
     else
     {
       std::string free;
-      report    = driven_.solve(system_, *solver_, relative_tolerance, correction, free);
+      report    = driven_.solve(system_, rates ? &*rates : nullptr, *solver_, relative_tolerance, solutions, free);
       singular_ = singular_ || !free.empty();
       if (!free.empty())
         throw SolverFailure("the system is singular: " + free + ", and nothing resists it; " +
@@ -264,8 +286,18 @@ namespace Nodus
     if (report.negative_pivots >= 0 && surplus > 0 && !std::exchange(unstable_, true))
       journal_.console.remark("the tangent has " + std::to_string(surplus) +
                               " negative eigenvalues more than multipliers: the iterate is not stable");
+    correction.reinit(solutions.front(), true); // swap() needs as many blocks
+    correction.swap(solutions.front());
+    if (rates)
+    {
+      arc_length_.find_step(increment_.end, correction, solutions[1]);
+      correction.add(arc_length_.step(), solutions[1]);
+      driven_.add_time(arc_length_.step());
+    }
     // The solver leaves prescribed components alone: they take what the constraints still ask for.
     constraints_->distribute(correction.block(0));
+    if (rates)
+      correction.block(0).add(arc_length_.step(), rates->prescribed);
     limit_step(correction);
     return report.iterations;
   }
@@ -304,6 +336,11 @@ namespace Nodus
     states_.now.rigid    = rigid_iterate_;
     const double part    = factor * step_limit_;
     states_.now.unknowns.add(part, correction);
+    if (arc_length_.acts())
+    {
+      increment_.end = arc_length_.time(part);
+      impose();
+    }
     model_.rigid_bodies.advance(part, driven_.correction());
     model_.rigid_bodies.move(states_.now.unknowns.block(0));
   }
@@ -345,51 +382,5 @@ namespace Nodus
                               (merged_.status ? " iterations ago" : " passes ago"));
     }
     return result;
-  }
-
-  Vector Equilibrium::applied_forces() const
-  {
-    const auto &constraints = model_.boundary_conditions->homogeneous_constraints();
-    Vector      applied(forces_.external);
-    applied -= forces_.drag;
-    for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
-      if (constraints.is_constrained(i))
-        applied(i) = forces_.internal(i) + forces_.contact(i);
-    for (unsigned int b = 0; b < model_.rigid_bodies.size(); ++b) // what drives these counts as force and moment
-      for (const RigidBodies::Node &node : model_.rigid_bodies.nodes(b))
-        for (unsigned int c = 0; c < dim; ++c)
-          applied(node.dof + c) = forces_.external(node.dof + c) - forces_.drag(node.dof + c);
-    applied.compress(dealii::VectorOperation::insert);
-    return applied;
-  }
-
-  Vector Equilibrium::reactions() const
-  {
-    const auto &constraints = model_.boundary_conditions->homogeneous_constraints();
-    Vector      reactions(forces_.internal);
-    for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
-      reactions(i) =
-          constraints.is_constrained(i) ? forces_.internal(i) - forces_.external(i) + forces_.contact(i) : 0.;
-    reactions.compress(dealii::VectorOperation::insert);
-    return reactions;
-  }
-
-  /// Names the rigid motions that nothing holds as the increment begins: contact has to, or the system is singular.
-  void Equilibrium::warn_of_free_motions()
-  {
-    std::string text;
-    for (const auto &motion : free_motions(model_, states_.now, increment_.end))
-      text += (text.empty() ? "" : "; ") + motion.text;
-    const bool has_closed = model_.contact->n_closed() > 0;
-    if (!text.empty())
-      journal_.console.remark("nothing holds these motions as the increment begins: " + text +
-                              (model_.stabilisation->acts() ? "; viscous stabilisation does"
-                               : has_closed ? "; the closed contact does not, and no more may close in time"
-                                            : "; contact has to close at once"));
-  }
-
-  std::string Equilibrium::ways_to_hold(const std::string &first) const
-  {
-    return Nodus::ways_to_hold(model_, states_.now, increment_, first);
   }
 } // namespace Nodus

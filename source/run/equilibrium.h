@@ -2,6 +2,7 @@
 #define nodus_run_equilibrium_h
 
 #include "contact/status.h"
+#include "run/arc_length.h"
 #include "run/driven_rigid_bodies.h"
 #include "run/journal.h"
 #include "run/load_stepping.h"
@@ -99,9 +100,14 @@ namespace Nodus
       return cycling_;
     }
 
+    /// Its end is the time of the trial, where that is an unknown.
     const Increment &increment() const
     {
       return increment_;
+    }
+    const ArcLength &arc_length() const
+    {
+      return arc_length_;
     }
     const MergedLoops &merged() const
     {
@@ -140,6 +146,7 @@ namespace Nodus
     Vector reactions() const;
 
   private:
+    void        impose();
     Norms       assemble_contact();
     void        limit_step(const BlockVector &correction);
     void        warn_of_free_motions();
@@ -150,6 +157,7 @@ namespace Nodus
     States                                  &states_;
     std::unique_ptr<RescuedSolver>           solver_;
     DrivenRigidBodies                        driven_;
+    ArcLength                                arc_length_;
     LinearSystem                             system_;
     NodalForces                              forces_;
     Vector                                   u_;      ///< displacements with ghosts, of the trial

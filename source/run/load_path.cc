@@ -1,4 +1,5 @@
 #include "run/load_path.h"
+#include "base/text.h"
 #include "mesh/sides.h"
 #include "run/unheld_bodies.h"
 
@@ -20,6 +21,8 @@ namespace Nodus
     constexpr unsigned int patient_halvings = 2;
     /// Of the contact force: the log says nothing of smaller friction.
     constexpr double negligible_friction = 1e-3;
+    /// Arc lengths that the last increment of an interval may be long.
+    constexpr double largest_closing = 2.;
   } // namespace
 
   LoadPath::LoadPath(const RunParts &parts)
@@ -39,6 +42,12 @@ namespace Nodus
     parts_.journal.console.begin_at(path.progress());
     while (!path.finished())
     {
+      if (path.exhausted())
+        throw SolverFailure(text(parts_.model.parameters.load_stepping.maximum_increments,
+                                 " increments under arc length have not come to the end of the interval, t = ",
+                                 path.interval_end(),
+                                 " ('Load stepping/Maximum increments'). The last converged state is t = ",
+                                 path.time()));
       if (!solve())
         continue;
       if (mesh_repetitions_ < adaptivity.repetitions && parts_.adaptation.adapt())
@@ -72,7 +81,8 @@ namespace Nodus
     LoadStepping   &path      = parts_.path;
     Journal        &journal   = parts_.journal;
     const Increment increment = path.at_hand();
-    journal.console.begin_increment(increment.number, increment.begin, increment.end);
+    journal.console.begin_increment(
+        increment.number, increment.begin, increment.end, increment.finds_time() ? increment.arc : 0.);
     journal.diagnosis.begin_increment(increment.number, increment.begin, increment.end);
     parts_.equilibrium.begin_increment(increment);
     try
@@ -82,6 +92,7 @@ namespace Nodus
       else
         parts_.strategy.solve_increment();
       relaxing_ = relaxed_ = false;
+      check_closing();
       check_stabilised_motion(parts_.model, parts_.states);
       judge();
       return true;
@@ -96,7 +107,7 @@ namespace Nodus
       const bool may_shrink =
           !parts_.strategy.begins_singular() && failure.kind() != SolverFailure::Kind::prescribed_contact;
       const bool  relax  = may_shrink && may_relax(failure.kind());
-      const bool  halved = may_shrink && !relax && path.cut_back();
+      const bool  halved = may_shrink && !relax && try_smaller(failure.kind());
       const bool  again  = halved || relax;
       std::string hint;
       if (!again)
@@ -111,12 +122,41 @@ namespace Nodus
       parts_.model.roll_back(parts_.states);
       if (!again)
         give_up(reason.str(), hint, may_shrink);
-      journal.console.remark(reason.str() + (halved ? "; the increment is halved" : "; the bodies are relaxed"));
+      journal.console.remark(reason.str() + (relax                  ? "; the bodies are relaxed"
+                                             : path.ends_interval() ? "; it is tried to end there"
+                                                                    : "; the increment is halved"));
       relaxing_ = relax;
       relaxed_  = relaxed_ || relax;
-      cut_backs_ += halved;
+      cut_backs_ += halved && !path.ends_interval();
       return false;
     }
+  }
+
+  /// The increment at hand has failed: it is halved, or ends with the interval. @returns false when neither is
+  /// possible.
+  bool LoadPath::try_smaller(const SolverFailure::Kind failure)
+  {
+    if (failure != SolverFailure::Kind::beyond_interval)
+      return parts_.path.cut_back();
+    parts_.path.close_interval();
+    return true;
+  }
+
+  /// An increment that ends where an interval under arc length does is given its time: the equilibrium that was found
+  /// may be on another branch. @throws SolverFailure where it is farther away than the arc length.
+  void LoadPath::check_closing() const
+  {
+    const Increment &increment = parts_.equilibrium.increment();
+    if (increment.arc == 0. || increment.finds_time())
+      return;
+    const double motion = parts_.equilibrium.arc_length().motion();
+    if (!(motion > 0. && motion <= largest_closing * increment.arc))
+      throw SolverFailure(text("the equilibrium at the end of the interval is ",
+                               motion,
+                               " along the path, the arc length is ",
+                               increment.arc,
+                               ": it may be on another branch"),
+                          SolverFailure::Kind::judged);
   }
 
   /// Where iterates are not stable: once after a few halvings, and again when no smaller increment is left.
@@ -158,12 +198,14 @@ namespace Nodus
   {
     LoadStepping   &path      = parts_.path;
     Journal        &journal   = parts_.journal;
-    const Increment increment = path.at_hand();
+    const Increment increment = parts_.equilibrium.increment();
     warn_of_lost_partners();
     warn_of_noise();
     report_stabilisation();
     commit();
-    path.accept(journal.counts.newton, journal.counts.fallbacks == 0);
+    path.accept(journal.counts.newton,
+                journal.counts.fallbacks == 0,
+                {increment.end, parts_.equilibrium.arc_length().last_motion()});
     journal.counts.cut_backs = std::exchange(cut_backs_, 0);
     {
       const auto timer = journal.profile.time(Phase::output);
@@ -173,6 +215,8 @@ namespace Nodus
     const std::vector<ContactResultants> &resultants = parts_.results.resultants();
     for (unsigned int p = 0; p < never_closed_.size(); ++p)
       never_closed_[p] = never_closed_[p] && resultants[p].slip + resultants[p].stick == 0;
+    if (increment.finds_time())
+      journal.console.remark(text("t = ", increment.end));
     journal.console.end_increment(journal.counts, resultants, path.progress());
     if (callback)
       callback(increment.number, increment.end);
@@ -186,6 +230,11 @@ namespace Nodus
     now.history  = model.solid->reached();
     model.solid->start_from(now.history);
     audit_.account();
+    if (!parts_.equilibrium.increment().on_new_mesh())
+    {
+      now.motion = now.unknowns.block(0);
+      now.motion -= parts_.states.committed.unknowns.block(0);
+    }
     model.contact->end_increment(parts_.equilibrium.increment().duration());
     model.rigid_bodies.end_increment(parts_.equilibrium.driven().applied());
     if (parts_.equilibrium.increment().ends_interval)
@@ -321,13 +370,19 @@ namespace Nodus
       parts_.results.write_state(path.increment() - 1, path.time());
     }
     std::ostringstream message;
-    message << "increment " << path.increment() << " (t = " << path.target() << "), " << reason
-            << ". The last converged state is t = " << path.time()
+    const Increment    increment = path.at_hand();
+    message << "increment " << increment.number;
+    if (increment.finds_time())
+      message << " (from t = " << increment.begin << ", arc length " << increment.arc << "), ";
+    else
+      message << " (t = " << increment.end << "), ";
+    message << reason << ". The last converged state is t = " << path.time()
             << (path.increment() > 1 ? "" : " (no increment converged)");
     if (!may_shrink)
       message << ". Smaller increments do not change that, so the increment was not cut back";
     else if (parts_.model.parameters.load_stepping.cut_back)
-      message << ". The increment was cut back to " << path.target() - path.time();
+      message << ". The increment was cut back to "
+              << (increment.finds_time() ? increment.arc : increment.end - increment.begin);
     message << hint;
     throw SolverFailure(message.str());
   }

@@ -40,6 +40,8 @@ namespace Nodus
 
   private:
     bool              solve();
+    bool              try_smaller(SolverFailure::Kind failure);
+    void              check_closing() const;
     void              finish(const std::function<void(unsigned int, double)> &callback);
     bool              may_relax(SolverFailure::Kind failure) const;
     void              judge();

@@ -1,7 +1,6 @@
 #include "run/load_stepping.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace Nodus
 {
@@ -21,7 +20,10 @@ namespace Nodus
 
   void LoadStepping::divide(const double begin)
   {
-    begin_ = begin;
+    begin_   = begin;
+    arc_     = 0.;
+    n_arcs_  = 0;
+    closing_ = false;
     if (finished())
       return;
     const double wanted = (interval_end() - interval_begin()) / parameters_.increments[interval_];
@@ -38,6 +40,17 @@ namespace Nodus
     n_ticks_  = n_increments_ * base();
     position_ = 0;
     size_     = base();
+  }
+
+  /// The next increment is under arc length.
+  void LoadStepping::follow_arc(const bool easy, const Reached &reached)
+  {
+    if (arc_ == 0.)
+      arc_ = longest_arc_ = parameters_.arc_length > 0. ? parameters_.arc_length : reached.motion;
+    else if (easy)
+      arc_ = std::min(2. * arc_, longest_arc_);
+    reached_ = reached.time;
+    ++n_arcs_;
   }
 
   LoadStepping::Ticks LoadStepping::end_position() const
@@ -58,17 +71,20 @@ namespace Nodus
     return (interval_end() - begin_) / n_ticks_;
   }
 
-  void LoadStepping::accept(const unsigned int newton_iterations, const bool smooth)
+  void LoadStepping::accept(const unsigned int newton_iterations, const bool smooth, const Reached &reached)
   {
-    position_ = end_position();
+    const bool easy = smooth && newton_iterations <= parameters_.easy_iterations;
     ++increment_;
-    if (position_ == n_ticks_)
+    if (ends_interval())
     {
       ++interval_;
       divide(interval_begin());
       return;
     }
-    if (!smooth || newton_iterations > parameters_.easy_iterations)
+    if (parameters_.has_arc_length(interval_) && reached.motion > 0.)
+      return follow_arc(easy, reached);
+    position_ = end_position();
+    if (!easy)
       return;
     const Ticks twice = 2 * size_;
     // Up to the increments asked for only where it leads back to their times.
@@ -85,10 +101,22 @@ namespace Nodus
     return parameters_.cut_back ? size : 0;
   }
 
+  double LoadStepping::half_arc() const
+  {
+    const double smallest = std::ldexp(longest_arc_, -static_cast<int>(default_halvings));
+    return parameters_.cut_back && arc_ >= 2. * smallest ? 0.5 * arc_ : 0.;
+  }
+
   bool LoadStepping::cut_back()
   {
-    if (half() == 0)
+    if (!may_cut_back())
       return false;
+    if (arc_ > 0.)
+    {
+      arc_     = half_arc();
+      closing_ = false;
+      return true;
+    }
     size_ = half();
     return true;
   }
@@ -98,10 +126,13 @@ namespace Nodus
     const LoadSteppingParameters asked = parameters_;
     const auto                  &then  = saved.parameters_;
     if (asked.interval_ends == then.interval_ends && asked.increments == then.increments &&
-        asked.cut_back == then.cut_back && asked.minimum_increment == then.minimum_increment)
+        asked.cut_back == then.cut_back && asked.minimum_increment == then.minimum_increment &&
+        asked.control == then.control)
     {
       *this       = saved;
       parameters_ = asked;
+      if (arc_ > 0. && asked.arc_length > 0. && asked.arc_length != then.arc_length)
+        arc_ = longest_arc_ = asked.arc_length;
       return;
     }
     const double time = saved.time();

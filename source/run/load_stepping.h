@@ -3,6 +3,7 @@
 
 #include <nodus/parameters/parameters.h>
 
+#include <cmath>
 #include <cstdint>
 
 namespace Nodus
@@ -14,15 +15,24 @@ namespace Nodus
     double       begin = 0., end = 0.;
     double       interval_begin = 0., interval_end = 0.;
     bool         ends_interval = false;
+    /// The interval is under arc length: equilibria are followed whether they are stable or not.
+    bool   follows_branch = false;
+    double arc            = 0.; ///< motion along the last secant; 0: the first increment of an interval [length]
 
+    /// The end is an unknown, which begins where the last increment ended.
+    bool finds_time() const
+    {
+      return arc > 0. && !ends_interval;
+    }
+    /// Time that goes by, also where t goes back.
     double duration() const
     {
-      return end - begin;
+      return std::abs(end - begin);
     }
     /// Equilibrium is found where the last increment ended, on another mesh.
     bool on_new_mesh() const
     {
-      return begin == end;
+      return begin == end && arc == 0.;
     }
     bool begins_interval() const
     {
@@ -35,12 +45,23 @@ namespace Nodus
     }
   };
 
+  /// What an increment has come to: its time, and the largest displacement of a free node in it [length].
+  struct Reached
+  {
+    double time = 0., motion = 0.;
+  };
+
   /// Where a run is on its load path: time, increments and retries, no physics.
   ///
   /// An interval is divided into the increments that the user asks for. One that fails is halved, and after an easy one
   /// the next is twice as large again, so that the times asked for are met; beyond those, increments grow only when the
   /// user allows it. All times are exact fractions of the interval: they are the same in whatever steps it was
   /// travelled.
+  ///
+  /// In an interval under arc length the first increment is the first of these. From then on motions are given instead
+  /// of times: that of the first increment, or the one asked for, which is halved where it fails and grows back
+  /// likewise. An increment that would go beyond the end of the interval is tried as one that ends there, at a given
+  /// time.
   class LoadStepping
   {
   public:
@@ -59,11 +80,11 @@ namespace Nodus
     /// Time of the last converged increment, and the one that the increment at hand goes to.
     double time() const
     {
-      return time_of(position_);
+      return arc_ > 0. ? reached_ : time_of(position_);
     }
     double target() const
     {
-      return time_of(end_position());
+      return arc_ == 0. ? time_of(end_position()) : closing_ ? interval_end() : reached_;
     }
     double interval_begin() const
     {
@@ -76,16 +97,29 @@ namespace Nodus
     /// The increment at hand is the last one of its interval.
     bool ends_interval() const
     {
-      return end_position() == n_ticks_;
+      return arc_ > 0. ? closing_ : end_position() == n_ticks_;
     }
     /// The one to solve next, and the standstill at the time that has been reached.
     Increment at_hand() const
     {
-      return {increment_, time(), target(), interval_begin(), interval_end(), ends_interval()};
+      return {increment_,
+              time(),
+              target(),
+              interval_begin(),
+              interval_end(),
+              ends_interval(),
+              parameters_.has_arc_length(interval_),
+              arc_};
     }
     Increment standstill() const
     {
-      return {increment_, time(), time(), interval_begin(), interval_end(), time() == interval_begin()};
+      return {increment_,
+              time(),
+              time(),
+              interval_begin(),
+              interval_end(),
+              time() == interval_begin(),
+              parameters_.has_arc_length(interval_)};
     }
     /// Part of the whole path that is done, 0 to 1.
     double progress() const
@@ -94,13 +128,23 @@ namespace Nodus
     }
 
     /// The increment at hand converged in so many Newton iterations. Goes on to the next one, larger if @p smooth
-    /// (without fallback) and the iterations were few.
-    void accept(unsigned int newton_iterations, bool smooth);
+    /// (without fallback) and the iterations were few. @p reached counts under arc length.
+    void accept(unsigned int newton_iterations, bool smooth, const Reached &reached = {});
     /// The increment at hand failed: halves it. @returns false when it may not become smaller.
     bool cut_back();
     bool may_cut_back() const
     {
-      return half() > 0;
+      return arc_ > 0. ? half_arc() > 0. : half() > 0;
+    }
+    /// The increment at hand goes beyond the end of the interval: it ends there.
+    void close_interval()
+    {
+      closing_ = true;
+    }
+    /// The interval at hand has had all increments under arc length that it may have.
+    bool exhausted() const
+    {
+      return arc_ > 0. && n_arcs_ >= parameters_.maximum_increments;
     }
     /// Smallest increment of this interval that cut_back() leads to.
     double smallest() const;
@@ -114,18 +158,21 @@ namespace Nodus
       archive &parameters_.interval_ends &parameters_.increments &parameters_.cut_back &parameters_
           .minimum_increment &parameters_.maximum_increment                                                &parameters_
           .easy_iterations &increment_ &interval_ &begin_ &n_increments_ &n_halvings_ &n_ticks_ &position_ &size_;
+      archive &parameters_.control &parameters_.arc_length &reached_ &arc_ &longest_arc_ &n_arcs_ &closing_;
     }
 
   private:
     using Ticks = std::uint64_t;
     /// Divides what is left of the interval at hand from @p begin into increments of the size that the user asks for.
     void  divide(double begin);
+    void  follow_arc(bool easy, const Reached &reached);
     Ticks base() const
     {
       return Ticks(1) << n_halvings_;
     }
     Ticks  end_position() const;
-    Ticks  half() const; ///< of the increment at hand, 0: none
+    Ticks  half() const;     ///< of the increment at hand, 0: none
+    double half_arc() const; ///< likewise
     double time_of(Ticks position) const;
 
     LoadSteppingParameters parameters_;
@@ -133,6 +180,10 @@ namespace Nodus
     double                 begin_        = 0.; ///< from there on the interval at hand is divided
     unsigned int           n_increments_ = 1, n_halvings_ = 0;
     Ticks                  n_ticks_ = 1, position_ = 0, size_ = 1; ///< in the smallest increments
+    double                 arc_ = 0., longest_arc_ = 0.; ///< at hand, 0: times are given; what it grows to [length]
+    double                 reached_ = 0.;                ///< time of the last increment, under arc length
+    unsigned int           n_arcs_  = 0;                 ///< increments of the interval under arc length
+    bool                   closing_ = false;             ///< the one at hand ends the interval
   };
 } // namespace Nodus
 

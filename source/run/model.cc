@@ -117,6 +117,7 @@ namespace Nodus
     layout.reinit(now.unknowns);
     now.reaction.reinit(layout.owned[0], communicator);
     now.applied.reinit(layout.owned[0], communicator);
+    now.motion.reinit(layout.owned[0], communicator);
     now.history = solid->start();
 
     length_scale = 0.;
@@ -154,7 +155,7 @@ namespace Nodus
     set_conditions(increment.end);
     contact->begin_increment(increment.begin, increment.end, resolved_interference(increment.end));
     for (auto &material : materials)
-      material->set_step(increment.end - increment.begin);
+      material->set_step(increment.duration());
     stabilisation->set_increment(increment.begin, increment.end, increment.interval_begin, increment.interval_end);
   }
 

@@ -21,8 +21,12 @@ namespace Nodus
     if (!model_.parameters.output.write_vtu)
       return;
     const VtuOutput::Series series = vtu_ ? vtu_->series() : VtuOutput::Series();
-    vtu_                           = std::make_unique<VtuOutput>(
-        model_.parameters.output.results_folder, model_.bodies, model_.dof_handler, *model_.mapping, *model_.solid);
+    vtu_                           = std::make_unique<VtuOutput>(model_.parameters.output.results_folder,
+                                       model_.bodies,
+                                       model_.dof_handler,
+                                       *model_.mapping,
+                                       *model_.solid,
+                                       model_.parameters.load_stepping.has_arc_length());
     if (!series.empty())
       vtu_->continue_from(series);
   }

@@ -24,6 +24,7 @@ namespace Nodus
     Vector   reaction; ///< of what was prescribed when the last interval ended; what is released sheds it [force]
     Vector   applied;  ///< loads and reactions as the increment begins [force]
     Energies energies; ///< up to then
+    Vector   motion;   ///< of the last increment, which arc length goes on along [length]
     double   stiffness_scale = 0.; ///< largest diagonal entry of the first bulk tangent
   };
 
@@ -41,10 +42,11 @@ namespace Nodus
   template <typename AnyState, typename Visitor>
   void visit_members(AnyState &state, Visitor &visitor)
   {
-    auto &[unknowns, contact, rigid, history, reaction, applied, energies, stiffness_scale] = state;
+    auto &[unknowns, contact, rigid, history, reaction, applied, energies, motion, stiffness_scale] = state;
     visitor.nodes(unknowns.block(0));
     visitor.nodes(reaction);
     visitor.nodes(applied);
+    visitor.nodes(motion);
     visitor.multipliers(unknowns.block(1), 1u);
     visitor.multipliers(unknowns.block(2), 2u);
     visitor.cells(history);

@@ -143,6 +143,8 @@ namespace Nodus
       return;
     const std::string what = "the equilibrium that was found is not stable (" + std::to_string(n) +
                              (n == 1 ? " negative eigenvalue)" : " negative eigenvalues)");
+    if (equilibrium_.increment().follows_branch)
+      return journal_.console.remark(what);
     if (!may_relax())
       return journal_.console.remark("warning: " + what + ": the bodies would leave it");
     journal_.console.remark(what + ": the bodies are let go from it");

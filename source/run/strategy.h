@@ -46,7 +46,8 @@ namespace Nodus
     }
     bool may_relax() const
     {
-      return model_.parameters.strategy.uses(Remedy::relaxation) && stability_.can_count();
+      return model_.parameters.strategy.uses(Remedy::relaxation) && stability_.can_count() &&
+             !equilibrium_.increment().follows_branch;
     }
 
     /// No attempt came beyond its first system, which leaves bodies free, and that is the one of the last converged

@@ -48,46 +48,46 @@ namespace Nodus
 
   void BorderedSystem::eliminate(const Solve                      &solve,
                                  const dealii::FullMatrix<double> &P,
-                                 const dealii::Vector<double>     &p,
                                  const std::vector<unsigned int>  &rows,
-                                 const dealii::Vector<double>     &b)
+                                 const std::vector<RightHandSide> &rhs)
   {
-    const unsigned int       n = P.n();
-    std::vector<BlockVector> rhs(n + 1);
-    for (unsigned int j = 0; j <= n; ++j)
+    const unsigned int       n = P.n(), n_rhs = rhs.size();
+    std::vector<BlockVector> all(n_rhs + n);
+    for (unsigned int j = 0; j < all.size(); ++j)
     {
-      if (j == 0)
-        rhs[j] = system_.rhs;
+      if (j < n_rhs)
+        all[j] = *rhs[j].a;
       else
-        system_.layout->reinit(rhs[j]);
+        system_.layout->reinit(all[j]);
       for (unsigned int c = 0; c < B_.size(); ++c)
-        if (const double factor = j == 0 ? -p(c) : P(c, j - 1); factor != 0.)
-          rhs[j].add(factor, B_[c]);
+        if (const double factor = j < n_rhs ? -rhs[j].p(c) : P(c, j - n_rhs); factor != 0.)
+          all[j].add(factor, B_[c]);
     }
     std::vector<const BlockVector *> pointers;
-    for (const BlockVector &one : rhs)
+    for (const BlockVector &one : all)
       pointers.push_back(&one);
     report_ = solve(pointers, x_);
 
     dealii::FullMatrix<double> DP(P.m(), n);
-    dealii::Vector<double>     Dp(P.m());
     D_.mmult(DP, P);
-    D_.vmult(Dp, p);
     S_.reinit(n, n);
-    s_.reinit(n);
     for (unsigned int i = 0; i < n; ++i)
-    {
-      const BlockVector &row = C_[rows[i]];
-      s_(i)                  = b(rows[i]) - Dp(rows[i]) - row * x_[0];
       for (unsigned int j = 0; j < n; ++j)
-        S_(i, j) = DP(rows[i], j) - row * x_[j + 1];
+        S_(i, j) = DP(rows[i], j) - C_[rows[i]] * x_[n_rhs + j];
+    s_.assign(n_rhs, dealii::Vector<double>(n));
+    for (unsigned int k = 0; k < n_rhs; ++k)
+    {
+      dealii::Vector<double> Dp(P.m());
+      D_.vmult(Dp, rhs[k].p);
+      for (unsigned int i = 0; i < n; ++i)
+        s_[k](i) = rhs[k].b(rows[i]) - Dp(rows[i]) - C_[rows[i]] * x_[k];
     }
   }
 
-  void BorderedSystem::expand(const dealii::Vector<double> &y, BlockVector &x) const
+  void BorderedSystem::expand(const unsigned int k, const dealii::Vector<double> &y, BlockVector &x) const
   {
-    x = x_[0];
+    x = x_[k];
     for (unsigned int j = 0; j < y.size(); ++j)
-      x.add(-y(j), x_[j + 1]);
+      x.add(-y(j), x_[s_.size() + j]);
   }
 } // namespace Nodus

@@ -29,38 +29,43 @@ namespace Nodus
     using Solve =
         std::function<LinearSolver::Report(const std::vector<const BlockVector *> &rhs, std::vector<BlockVector> &x)>;
 
-    /// @param P, p of the motions; @param rows the equations that count, as many as P has columns; @param b all of
-    /// them. Collective.
+    /// a, and p and b of all motions.
+    struct RightHandSide
+    {
+      const BlockVector     *a;
+      dealii::Vector<double> p, b;
+    };
+    /// @param P of the motions; @param rows the equations that count, as many as P has columns; @param rhs at least
+    /// one. Collective.
     void eliminate(const Solve                      &solve,
                    const dealii::FullMatrix<double> &P,
-                   const dealii::Vector<double>     &p,
                    const std::vector<unsigned int>  &rows,
-                   const dealii::Vector<double>     &b);
+                   const std::vector<RightHandSide> &rhs);
 
     /// Of A.
     const LinearSolver::Report &report() const
     {
       return report_;
     }
-    /// The equations for y that are left: matrix and right-hand side.
+    /// The equations for y that are left: matrix, and each right-hand side.
     const dealii::FullMatrix<double> &schur_complement() const
     {
       return S_;
     }
-    const dealii::Vector<double> &rhs() const
+    const dealii::Vector<double> &rhs(const unsigned int k) const
     {
-      return s_;
+      return s_[k];
     }
-    /// x at @p y.
-    void expand(const dealii::Vector<double> &y, BlockVector &x) const;
+    /// x of right-hand side @p k at @p y.
+    void expand(unsigned int k, const dealii::Vector<double> &y, BlockVector &x) const;
 
   private:
-    const LinearSystem        &system_;
-    std::vector<BlockVector>   B_, C_; ///< columns and rows
-    dealii::FullMatrix<double> D_, S_;
-    dealii::Vector<double>     s_;
-    std::vector<BlockVector>   x_; ///< at y = 0, then minus the derivatives by each y
-    LinearSolver::Report       report_;
+    const LinearSystem                 &system_;
+    std::vector<BlockVector>            B_, C_; ///< columns and rows
+    dealii::FullMatrix<double>          D_, S_;
+    std::vector<dealii::Vector<double>> s_; ///< of each right-hand side
+    std::vector<BlockVector>            x_; ///< of each at y = 0, then minus the derivatives by each y
+    LinearSolver::Report                report_;
   };
 } // namespace Nodus
 

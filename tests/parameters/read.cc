@@ -215,6 +215,9 @@ namespace
     print("maximum increment", parameters.load_stepping.maximum_increment);
     print("easy iterations", parameters.load_stepping.easy_iterations);
     print("viscous stabilisation", parameters.load_stepping.viscous_stabilisation);
+    print("intervals with a control of their own", parameters.load_stepping.control.size());
+    print("arc length", parameters.load_stepping.arc_length);
+    print("maximum increments", parameters.load_stepping.maximum_increments);
     const auto &adaptivity = parameters.adaptivity;
     print("interval", adaptivity.interval);
     print("initial cycles", adaptivity.initial_cycles);
@@ -278,4 +281,7 @@ int main()
   print("every_key.json says the same",
         without_blanks(text) == without_blanks(everything(SOURCE_DIR "/every_key.json")));
   print("keys without a unit", count_without_unit());
+  const LoadSteppingParameters controlled =
+      Parameters::read(SOURCE_DIR "/two_blocks.prm", {"Load stepping/Control=time, arc length"}).load_stepping;
+  print("second interval alone under arc length", controlled.has_arc_length(1) && !controlled.has_arc_length(0));
 }

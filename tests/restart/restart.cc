@@ -164,6 +164,15 @@ int main(int argc, char **argv)
   metal.bodies[0].volumetric_treatment       = BodyParameters::VolumetricTreatment::mean_dilatation;
   compare("elastoplastic", metal);
 
+  auto arc                        = p; // until the upper block turns
+  arc.load_stepping.interval_ends = {0.5};
+  arc.load_stepping.increments    = {10};
+  arc.load_stepping.control       = {LoadSteppingParameters::Control::arc_length};
+  compare("arc length", arc);
+  auto driven_arc          = SlidingBlock::driven("");
+  driven_arc.load_stepping = arc.load_stepping;
+  compare("arc length, rigid body driven by force and moment", driven_arc);
+
   compare("rigid body driven by force and moment", SlidingBlock::driven(""));
   compare("plane that a driven body carries", SlidingBlock::under_driven_plane(""));
   check_nothing_to_continue(p);

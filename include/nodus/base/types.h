@@ -79,9 +79,11 @@ namespace Nodus
       linear_solver,   ///< the solution of a linear system did not succeed
       status_cycle,
       geometry_cycle,
-      loop_limit,        ///< not converged in the passes that a loop may take
-      judged,            ///< what the loops found does not hold where it is measured anew
-      prescribed_contact ///< likewise, because displacements of both sides are prescribed: no smaller increment helps
+      loop_limit,         ///< not converged in the passes that a loop may take
+      judged,             ///< what the loops found does not hold where it is measured anew
+      prescribed_contact, ///< likewise, because displacements of both sides are prescribed: no smaller increment helps
+      before_interval,    ///< under arc length time goes back below the begin of the interval
+      beyond_interval     ///< likewise, beyond its end
     };
 
     explicit SolverFailure(const std::string &message, const Kind kind = Kind::unspecified)

@@ -69,6 +69,11 @@ namespace Nodus
 
   struct LoadSteppingParameters
   {
+    enum class Control
+    {
+      time,
+      arc_length ///< time follows from a given motion (run/arc_length.h)
+    };
     std::vector<double>       interval_ends = {1.}; ///< increasing times; the first interval starts at 0
     std::vector<unsigned int> increments    = {1};  ///< per interval
     bool                      cut_back      = true; ///< halve increments that fail
@@ -76,6 +81,13 @@ namespace Nodus
     double       maximum_increment     = 0.; ///< of time, that increments grow to; 0 = the interval's increments
     unsigned int easy_iterations       = 10; ///< of Newton, up to which the next increment may be twice as large
     double       viscous_stabilisation = 0.; ///< [-], see ViscousStabilisation; 0: none
+    std::vector<Control> control       = {Control::time}; ///< of all intervals, or of each
+    double               arc_length    = 0.; ///< motion of an increment [length]; 0: that of the interval's first one
+    unsigned int         maximum_increments = 1000; ///< of an interval under arc length
+
+    /// Whether @p interval, from 0, is under arc length; whether any is.
+    bool has_arc_length(unsigned int interval) const;
+    bool has_arc_length() const;
   };
 
   struct AdaptivityParameters

@@ -1,0 +1,53 @@
+#include "run/equilibrium.h"
+#include "run/unheld_bodies.h"
+
+// What others hear of an equilibrium: forces, and what nothing holds.
+
+namespace Nodus
+{
+  Vector Equilibrium::applied_forces() const
+  {
+    const auto &constraints = model_.boundary_conditions->homogeneous_constraints();
+    Vector      applied(forces_.external);
+    applied -= forces_.drag;
+    for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
+      if (constraints.is_constrained(i))
+        applied(i) = forces_.internal(i) + forces_.contact(i);
+    for (unsigned int b = 0; b < model_.rigid_bodies.size(); ++b) // what drives these counts as force and moment
+      for (const RigidBodies::Node &node : model_.rigid_bodies.nodes(b))
+        for (unsigned int c = 0; c < dim; ++c)
+          applied(node.dof + c) = forces_.external(node.dof + c) - forces_.drag(node.dof + c);
+    applied.compress(dealii::VectorOperation::insert);
+    return applied;
+  }
+
+  Vector Equilibrium::reactions() const
+  {
+    const auto &constraints = model_.boundary_conditions->homogeneous_constraints();
+    Vector      reactions(forces_.internal);
+    for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
+      reactions(i) =
+          constraints.is_constrained(i) ? forces_.internal(i) - forces_.external(i) + forces_.contact(i) : 0.;
+    reactions.compress(dealii::VectorOperation::insert);
+    return reactions;
+  }
+
+  /// Names the rigid motions that nothing holds as the increment begins: contact has to, or the system is singular.
+  void Equilibrium::warn_of_free_motions()
+  {
+    std::string text;
+    for (const auto &motion : free_motions(model_, states_.now, increment_.end))
+      text += (text.empty() ? "" : "; ") + motion.text;
+    const bool has_closed = model_.contact->n_closed() > 0;
+    if (!text.empty())
+      journal_.console.remark("nothing holds these motions as the increment begins: " + text +
+                              (model_.stabilisation->acts() ? "; viscous stabilisation does"
+                               : has_closed ? "; the closed contact does not, and no more may close in time"
+                                            : "; contact has to close at once"));
+  }
+
+  std::string Equilibrium::ways_to_hold(const std::string &first) const
+  {
+    return Nodus::ways_to_hold(model_, states_.now, increment_, first);
+  }
+} // namespace Nodus
