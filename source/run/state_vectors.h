@@ -11,8 +11,8 @@
 
 namespace Nodus
 {
-  /// Vectors of all nodes come first: displacement, reactions to be released, applied forces.
-  constexpr unsigned int n_displacement_vectors = 3;
+  /// Vectors of all nodes come first: displacement, reactions to be released, applied forces, the last motion.
+  constexpr unsigned int n_displacement_vectors = 4;
   /// Number of vectors.
   unsigned int n_state_vectors();
 

@@ -168,9 +168,11 @@ int main(int argc, char **argv)
   arc.load_stepping.interval_ends = {0.5};
   arc.load_stepping.increments    = {10};
   arc.load_stepping.control       = {LoadSteppingParameters::Control::arc_length};
+  arc.load_stepping.arc_length    = 0.012;
   compare("arc length", arc);
-  auto driven_arc          = SlidingBlock::driven("");
-  driven_arc.load_stepping = arc.load_stepping;
+  auto driven_arc                     = SlidingBlock::driven("");
+  driven_arc.load_stepping            = arc.load_stepping;
+  driven_arc.load_stepping.arc_length = 0.; // that of the first increment
   compare("arc length, rigid body driven by force and moment", driven_arc);
 
   compare("rigid body driven by force and moment", SlidingBlock::driven(""));

@@ -127,14 +127,17 @@ namespace
     const Path path = follow(p, height);
     report("and under an elastic block, " + std::string(merged ? "merged" : "three") + " loops, " + text_of(solver),
            std::to_string(path.size()) + " increments");
-    check("  displacement: off the closed form to 1e-9",
-          largest_deviation(path, [&](const double h) { return 1. - h + borne(h) / stiffness; }) < 1e-9);
+    const bool direct =
+        solver == LinearSolverParameters::Type::direct; // others end at the tolerance of Newton's method
+    check("  displacement: off the closed form to " + std::string(direct ? "1e-9" : "2e-8"),
+          largest_deviation(path, [&](const double h) { return 1. - h + borne(h) / stiffness; }) <
+              (direct ? 1e-9 : 2e-8));
     check_equal("  increments in which it goes back", path.n_back(), 5);
   }
   /// A bar that rises from a clamp at its left end to the middle of an arch.
   Parameters bar(const double rise)
   {
-    Parameters p               = under_arc_length(0., 100);
+    Parameters p               = under_arc_length(0.12, 100);
     p.degree                   = 2;
     p.bodies                   = {box("bar", "6,1,1", {0, 0, 0}, {10, 0.5, 1}, 1000., 0.3)};
     p.bodies[0].material.law   = MaterialParameters::Law::st_venant_kirchhoff;
@@ -162,6 +165,7 @@ namespace
     p.load_stepping.interval_ends = driven.values;
     p.load_stepping.increments.assign(driven.size(), 1);
     p.load_stepping.cut_back = false;
+    p.strategy.without       = {"relaxation"}; // states that are not stable are asked for
     const Path given         = follow(p,
                               [&](ContactProblem &problem)
                               {
@@ -173,36 +177,34 @@ namespace
     for (unsigned int i = 0; i < given.size(); ++i)
       difference = std::max(difference, std::abs(given.values[i] - driven.times[i]));
     check("  forces: the same to 1e-8", difference < 1e-8);
-    check("  the force goes back, and on", driven.n_back() > 3 && driven.times.back() == 1.);
-    if (std::getenv("NODUS_TEST_LOG") != nullptr)
-      for (unsigned int i = 0; i < given.size(); ++i)
-        std::cout << "   " << driven.values[i] << ' ' << driven.times[i] << ' ' << given.values[i] << std::endl;
+    check("  the force goes back five times or more, and on", driven.n_back() >= 5 && driven.times.back() == 1.);
   }
 
-  /// A rigid block that is tied to the upper end of the bar.
-  void press_tied_bar()
+  /// A rigid block that is tied to the upper end of the bar, until the force is @p end. The limit is 0.192: where the
+  /// end is a little above that, it must not be met on the other branch.
+  void press_tied_bar(const double end)
   {
-    Parameters p = bar(2.);
+    Parameters p = bar(1.2);
     p.bodies.push_back(box("press", "1,1,1", {10, 0, 0}, {10.5, 0.5, 1}, 0., 0.));
     p.bodies[1].rigid              = true;
     p.bodies[1].rotation_axis      = p.bodies[0].rotation_axis;
     p.bodies[1].rotation_angle     = p.bodies[0].rotation_angle;
     p.contact_pairs                = {pair(region(1, {x_plus}), region(2, {x_minus}))};
     p.contact_pairs[0].contact_law = ContactPairParameters::ContactLaw::tied;
-    p.load_stepping.increments     = {10};
-    check_press("a bar that snaps through", p, 2, 2.);
+    p.load_stepping.increments     = {20};
+    check_press("a bar that snaps through, to " + Numbers::plain(end), p, 2, end);
   }
 
-  /// A rigid sphere on half of an arch, with friction.
-  void press_arch()
+  /// A rigid cylinder on half of an arch, with friction; the limit is 0.212.
+  void press_arch(const double end)
   {
     Parameters p = bar(1.2);
     p.boundary_conditions.push_back(hold("middle", region(1, {x_plus}), {0}));
     p.boundary_conditions.push_back(hold("plane strain", region(1, {z_minus, z_plus}), {2}));
-    BodyParameters sphere;
-    sphere.name  = "press";
-    sphere.rigid = true;
-    p.bodies.push_back(sphere);
+    BodyParameters cylinder;
+    cylinder.name  = "press";
+    cylinder.rigid = true;
+    p.bodies.push_back(cylinder);
     const double          angle = p.bodies[0].rotation_angle * dealii::numbers::PI / 180., radius = 2.;
     const Point           top(10. * std::cos(angle) - 0.5 * std::sin(angle), 1.2 + 0.5 * std::cos(angle), 0.5);
     ContactPairParameters contact = pair(region(1, {y_plus}), RegionParameters(), 0.3);
@@ -213,8 +215,9 @@ namespace
     contact.master_surface.axis   = Vector3({0, 0, 1});
     contact.master_surface.point  = top + Vector3({-1., radius - 0.1 - 0.01, 0});
     p.contact_pairs               = {contact};
-    p.load_stepping.increments    = {10};
-    check_press("half of an arch that a rigid cylinder presses through, with friction", p, 2, 2.);
+    p.load_stepping.increments    = {20};
+    check_press(
+        "half of an arch that a rigid cylinder presses through with friction, to " + Numbers::plain(end), p, 2, end);
   }
 } // namespace
 
@@ -225,6 +228,8 @@ int main(int argc, char **argv)
   for (const auto solver : {LinearSolverParameters::Type::direct, LinearSolverParameters::Type::condensed})
     press_two_blocks(true, solver);
   press_two_blocks(false, LinearSolverParameters::Type::direct);
-  press_tied_bar();
-  press_arch();
+  press_tied_bar(1.);
+  press_tied_bar(0.194);
+  press_arch(1.);
+  press_arch(0.213);
 }
