@@ -45,6 +45,33 @@ namespace
     std::cout << std::endl;
     return path;
   }
+
+  /// Under arc length: 'e', 'h' as above, the node that moves most by 0.2 and time by 0.1 in each increment; '0' where
+  /// nothing moves, 'f' failure, 'b' beyond the end of the interval, '.' the last one that it may have.
+  LoadStepping follow_arc(const std::string &what, LoadStepping path, const std::string &script)
+  {
+    std::cout << what << ":";
+    for (const char letter : script)
+    {
+      const Increment increment = path.at_hand();
+      if (letter == '.')
+        std::cout << (path.exhausted() ? " no more" : " NOT EXHAUSTED");
+      else if (letter == 'b')
+        path.close_interval();
+      else if (letter == 'f')
+        std::cout << (path.cut_back() ? "" : " given up");
+      else
+      {
+        std::cout << (increment.finds_time() ? " by " : " to ")
+                  << (increment.finds_time() ? increment.arc : increment.end);
+        path.accept(letter == 'h' ? hard : easy,
+                    true,
+                    {increment.finds_time() ? increment.begin + 0.1 : increment.end, letter == '0' ? 0. : 0.2});
+      }
+    }
+    std::cout << (path.finished() ? ", finished" : "") << std::endl;
+    return path;
+  }
 } // namespace
 
 int main()
@@ -87,6 +114,26 @@ int main()
   }
   std::cout << "halved three times and divided by eight: " << (same && halved.finished() ? "equal" : "NOT EQUAL")
             << std::endl;
+
+  // Arc length.
+  auto arc    = parameters({1., 3.}, {4, 2});
+  arc.control = {LoadSteppingParameters::Control::arc_length};
+  follow_arc("as long as the first increment", LoadStepping(arc), "eee");
+  follow_arc("the first one is halved", LoadStepping(arc), "fefe");
+  follow_arc("times are given until something moves", LoadStepping(arc), "0ee");
+  follow_arc("one failure, then hard, then easy", LoadStepping(arc), "eefhehee");
+  follow_arc("1/64 is the end", LoadStepping(arc), "effffffff");
+  follow_arc("to the end of both intervals", LoadStepping(arc), "eebeebe");
+  follow_arc("the end is not met at first", LoadStepping(arc), "eebfhbh");
+  arc.maximum_increments = 3;
+  follow_arc("three increments of an interval", LoadStepping(arc), "eee.");
+  arc.arc_length              = 0.05;
+  arc.control                 = {LoadSteppingParameters::Control::time, LoadSteppingParameters::Control::arc_length};
+  const LoadStepping half_way = follow_arc("the second interval by 0.05", LoadStepping(arc), "eeeeeefe");
+  arc.arc_length              = 0.01;
+  LoadStepping shorter(arc);
+  shorter.continue_from(half_way);
+  follow_arc("  goes on by 0.01", shorter, "e.");
 
   // Restarts.
   const LoadStepping stopped = follow("stopped half-way", LoadStepping(plain), "efe.");

@@ -19,6 +19,7 @@ namespace
   {
     std::vector<double> times, values;
     std::string         end;
+    unsigned int        most_iterations = 0; ///< of Newton's method in an increment under arc length
 
     unsigned int size() const
     {
@@ -39,10 +40,12 @@ namespace
     ContactProblem problem(p, world(), log());
     Path           path;
     problem.on_increment(
-        [&](const unsigned int, const double t)
+        [&](const unsigned int increment, const double t)
         {
           path.times.push_back(t);
           path.values.push_back(see(problem));
+          if (increment > 1)
+            path.most_iterations = std::max(path.most_iterations, problem.iterations().newton);
         });
     try
     {
@@ -133,6 +136,7 @@ namespace
           largest_deviation(path, [&](const double h) { return 1. - h + borne(h) / stiffness; }) <
               (direct ? 1e-9 : 2e-8));
     check_equal("  increments in which it goes back", path.n_back(), 5);
+    check_count("  Newton iterations, most", path.most_iterations, 2);
   }
   /// A bar that rises from a clamp at its left end to the middle of an arch.
   Parameters bar(const double rise)
@@ -161,6 +165,10 @@ namespace
     body.rigid_free               = {};
     body.rigid_force              = {"0", "0", "0"};
     body.motion.translation[1]    = "-t";
+    p.load_stepping.interval_ends = {1.};
+    const Path moved              = follow(p, [](ContactProblem &) { return 0.; });
+    check("  its motion is given: to the end of the path", moved.end.empty());
+    check_count("    Newton iterations, most", moved.most_iterations, 4);
     p.load_stepping               = LoadSteppingParameters();
     p.load_stepping.interval_ends = driven.values;
     p.load_stepping.increments.assign(driven.size(), 1);

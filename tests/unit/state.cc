@@ -136,7 +136,7 @@ namespace
     }
     void operator()(State &state)
     {
-      auto &[unknowns, contact, rigid, history, reaction, applied, energies, stiffness_scale] = state;
+      auto &[unknowns, contact, rigid, history, reaction, applied, energies, motion, stiffness_scale] = state;
       for (unsigned int b = 0; b < unknowns.n_blocks(); ++b)
         (*this)(unknowns.block(b));
       (*this)(contact);
@@ -145,6 +145,7 @@ namespace
       (*this)(reaction);
       (*this)(applied);
       (*this)(energies);
+      (*this)(motion);
       (*this)(stiffness_scale);
     }
   };
