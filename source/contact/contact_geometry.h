@@ -37,7 +37,11 @@ namespace Nodus
 
     /// How far @p p is beyond the rim of the surface, of which @p closest is the nearest point: along the surface, over
     /// what is tolerated. Zero elsewhere.
-    Vector3 overhang(const Projection &closest, const Point &p) const;
+    Vector3                     overhang(const Projection &closest, const Point &p) const;
+    const SurfaceGeometry::Rim &rim(const unsigned int face) const
+    {
+      return on_rim_[face];
+    }
     /// What is tolerated at a master face [length].
     double tolerated_overhang(const unsigned int face) const
     {
@@ -49,12 +53,12 @@ namespace Nodus
 
   private:
     struct Tree;
-    const SurfaceGeometry           &master_;
-    const double                     tolerance_; ///< of the overhang [faces]
-    std::unique_ptr<Tree>            tree_;
-    std::vector<std::array<bool, 4>> on_rim_;        ///< edges xi = 0, 1, eta = 0, 1 that no other face shares
-    std::vector<Vector3>             centre_normal_; ///< outward
-    std::vector<double>              size_;
+    const SurfaceGeometry            &master_;
+    const double                      tolerance_; ///< of the overhang [faces]
+    std::unique_ptr<Tree>             tree_;
+    std::vector<SurfaceGeometry::Rim> on_rim_;
+    std::vector<Vector3>              centre_normal_; ///< outward
+    std::vector<double>               size_;
   };
 
   /// Both sides of every pair at the same positions, which must outlive it. Construction is collective.

@@ -21,13 +21,16 @@ namespace Nodus
       RigidPart             rigid;
     };
 
-    Partner meshed_partner(const ContactPairParameters &pair, const SurfaceGeometry &master, const Projection &point)
+    Partner meshed_partner(const ContactPairParameters &pair,
+                           const SurfaceGeometry       &master,
+                           const MasterSearch          &search,
+                           const Projection            &point)
     {
       const auto     &nodes = master.face(point.face).nodes;
       const FaceShape shape(master.degree(), point.xi, point.eta);
       const Vector3   normal = pair.normal == ContactPairParameters::Normal::averaged
                                    ? master.averaged_normal(point.face, point.xi, point.eta)
-                                   : master.facet_normal(point.face, point.xi, point.eta);
+                                   : master.facet_normal(point.face, point.xi, point.eta, search.rim(point.face));
       return {static_cast<unsigned int>(nodes.size()),
               nodes.data(),
               shape.value,
@@ -60,6 +63,7 @@ namespace Nodus
       , surfaces_(surfaces)
       , slave_(geometry.slave[face.pair])
       , master_(geometry.master[face.pair])
+      , search_(geometry.search[face.pair])
       , rigid_(geometry.rigid[face.pair])
       , measure_(measure)
       , points_(face.points)
@@ -126,7 +130,7 @@ namespace Nodus
     const Column       phi     = of_slaves(shape.value);
     const Column       hat     = of_slaves(AveragedJump::hats(degree, point.xi, point.eta));
     const Column       psi     = weight * (dual_ * phi + (1. - part_) * hat);
-    const Partner      partner = rigid_ == nullptr ? meshed_partner(pair_, master_, point.master)
+    const Partner      partner = rigid_ == nullptr ? meshed_partner(pair_, master_, search_, point.master)
                                                    : rigid_partner(*rigid_, slave_.at(f_, point.xi, point.eta).x);
     const Vector3      offset  = slave_.offset(f_, point.xi, point.eta) - partner.offset;
     const Vector3      normal  = pair_.normal == ContactPairParameters::Normal::slave

@@ -69,6 +69,7 @@ namespace Nodus
     const ContactPairParameters    &pair_;
     const ContactSurfaces          &surfaces_;
     const SurfaceGeometry          &slave_, &master_;
+    const MasterSearch             &search_;
     const RigidSurface *const       rigid_;
     const std::vector<Point>       &measure_;
     const std::vector<MortarPoint> &points_;

@@ -270,7 +270,8 @@ namespace Nodus
 
     const auto [f, xi, eta]        = master;
     const SurfaceGeometry &surface = geometry_.master[p];
-    const double           part    = pairs_[p].normal == Normal::averaged ? 1. : SurfaceGeometry::edge_part(xi, eta);
+    const auto            &rim     = geometry_.search[p].rim(f);
+    const double           part = pairs_[p].normal == Normal::averaged ? 1. : SurfaceGeometry::edge_part(xi, eta, rim);
     if (part == 1.)
       surface.averaged_normal_derivative(f, xi, eta, derivative);
     else
@@ -286,7 +287,7 @@ namespace Nodus
       const auto       normal = [&](const double sign)
       {
         return pairs_[p].normal == Normal::averaged ? surface.averaged_normal(f, xi + sign * dx, eta + sign * dy)
-                                                    : surface.facet_normal(f, xi + sign * dx, eta + sign * dy);
+                                                    : surface.facet_normal(f, xi + sign * dx, eta + sign * dy, rim);
       };
       const Vector3 slope = (normal(-1.) - normal(1.)) / (2. * step);
       for (const auto &[source, value] : motion[alpha])

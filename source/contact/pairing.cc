@@ -186,7 +186,7 @@ namespace Nodus
         if (pairs[p].normal == Normal::averaged)
           normal = -geometry.master[p].averaged_normal(face, xi, eta);
         else if (pairs[p].normal == Normal::master_facet)
-          normal = -geometry.master[p].facet_normal(face, xi, eta);
+          normal = -geometry.master[p].facet_normal(face, xi, eta, geometry.search[p].rim(face));
       }
       else if (rigid.found)
       {

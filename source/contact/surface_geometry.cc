@@ -286,14 +286,19 @@ namespace Nodus
     return normal / normal.norm();
   }
 
-  double SurfaceGeometry::edge_part(const double xi, const double eta)
+  double SurfaceGeometry::edge_part(const double xi, const double eta, const Rim &rim)
   {
-    return std::clamp(1. - std::min({xi, 1. - xi, eta, 1. - eta}) / edge_strip, 0., 1.);
+    const double distance[4] = {xi, 1. - xi, eta, 1. - eta};
+    double       nearest     = edge_strip;
+    for (unsigned int e = 0; e < 4; ++e)
+      if (!rim[e])
+        nearest = std::min(nearest, distance[e]);
+    return std::min(1., 1. - nearest / edge_strip);
   }
 
-  Vector3 SurfaceGeometry::facet_normal(const unsigned int f, const double xi, const double eta) const
+  Vector3 SurfaceGeometry::facet_normal(const unsigned int f, const double xi, const double eta, const Rim &rim) const
   {
-    const double part = edge_part(xi, eta);
+    const double part = edge_part(xi, eta, rim);
     if (part == 0.)
       return normal(f, xi, eta);
     const Vector3 sum = part * averaged_normal(f, xi, eta) + (1. - part) * normal(f, xi, eta);

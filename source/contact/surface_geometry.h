@@ -84,11 +84,13 @@ namespace Nodus
     Vector3 normal(unsigned int f, double xi, double eta) const;
     /// Outward unit normal interpolated from the averaged ones of the nodes.
     Vector3 averaged_normal(unsigned int f, double xi, double eta) const;
-    /// Outward unit normal of the face, which turns into the averaged one in a strip along its edges, so that it does
-    /// not jump from face to face (eq. P5).
-    Vector3 facet_normal(unsigned int f, double xi, double eta) const;
+    /// Edges xi = 0, 1, eta = 0, 1 of a face that no other face shares.
+    using Rim = std::array<bool, 4>;
+    /// Outward unit normal of the face, which turns into the averaged one in a strip along its edges but those on the
+    /// rim, so that it does not jump from face to face (eq. P5).
+    Vector3 facet_normal(unsigned int f, double xi, double eta, const Rim &rim) const;
     /// Part of the averaged normal in it: 1 on the edges, 0 beyond the strip.
-    static double edge_part(double xi, double eta);
+    static double edge_part(double xi, double eta, const Rim &rim);
     /// Smoothed position minus the one that the displacement shape functions give; zero when faceted.
     Vector3 offset(unsigned int f, double xi, double eta) const;
 

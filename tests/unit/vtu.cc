@@ -250,7 +250,7 @@ namespace
     std::vector<BoundaryConditions::Load> none;
     const SolidAssembler                  solid(dof_handler, mapping, materials, none);
     const ResultsFolder                   held(folder, communicator);
-    VtuOutput                             output(folder, bodies, dof_handler, mapping, solid);
+    VtuOutput                             output(folder, bodies, dof_handler, mapping, solid, false);
     output.write(1, 0.5, u, {top});
     output.write(2, 1.0, u, {top, top});
 

@@ -191,8 +191,9 @@ class Surface:
         return n / np.linalg.norm(n, axis=1)[:, None]
 
     def facet_normal(self, f, xi, eta):
-        """(P5): normals of the faces, averaged ones on their edges."""
-        s = np.maximum(0, 1 - np.min([xi, 1 - xi, eta, 1 - eta], axis=0) / 0.1)[:, None]
+        """(P5): normals of the faces, averaged ones on edges that two faces share."""
+        nearest = np.where(self.rim[f], 1, np.stack([xi, 1 - xi, eta, 1 - eta], 1)).min(axis=1)
+        s = np.maximum(0, 1 - nearest / 0.1)[:, None]
         n = s * self.normal(f, xi, eta, True) + (1 - s) * self.normal(f, xi, eta, False)
         return n / np.linalg.norm(n, axis=1)[:, None]
 
