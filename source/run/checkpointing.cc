@@ -197,7 +197,7 @@ namespace Nodus
           for (const DoFIndex i : dofs)
             values.push_back(v(i));
         // only cells with slave nodes have the state of these; tangents are never zero
-        const std::size_t n_always = n_displacement_vectors * dofs.size();
+        const std::size_t n_always = n_displacement_vectors() * dofs.size();
         if (std::all_of(values.begin() + n_always, values.end(), [](const double v) { return v == 0.; }))
           values.resize(n_always);
         piece.cells.emplace_back(key_of(model_.bodies, cell), std::move(values));

@@ -30,6 +30,14 @@ namespace Nodus
       text << '(' << v << ')';
       return text.str();
     }
+    /// Of a vector of all nodes.
+    Vector3 at(const RigidBodies::Node &node, const Vector &vector)
+    {
+      Vector3 value;
+      for (unsigned int c = 0; c < dim; ++c)
+        value[c] = vector(node.dof + c);
+      return value;
+    }
   } // namespace
 
   DrivenRigidBodies::DrivenRigidBodies(const Model &model, const States &states)
@@ -52,13 +60,8 @@ namespace Nodus
       const Point centre = rigid_bodies.centre(b);
       for (const RigidBodies::Node &node : rigid_bodies.nodes(b))
       {
-        Vector3 arm = node.X - centre, force;
-        for (unsigned int c = 0; c < dim; ++c)
-        {
-          arm[c] += u(node.dof + c);
-          force[c] = internal(node.dof + c) - external(node.dof + c);
-        }
-        const double k = model_.stabilisation->resistance(layout.owned[0].index_within_set(node.dof));
+        const Vector3 arm = node.X - centre + at(node, u), force = at(node, internal) - at(node, external);
+        const double  k = model_.stabilisation->resistance(layout.owned[0].index_within_set(node.dof));
         if (force == Vector3() && k == 0.)
           continue;
         const Vector3 moment = dealii::cross_product_3d(arm, force);
@@ -142,13 +145,7 @@ namespace Nodus
       const Point centre = rigid_bodies.centre(b);
       for (const RigidBodies::Node &node : rigid_bodies.nodes(b))
       {
-        Vector3 arm = node.X - centre, force;
-        for (unsigned int c = 0; c < dim; ++c)
-        {
-          arm[c] += u(node.dof + c);
-          force[c] = forces(node.dof + c);
-        }
-        const Vector3 moment = dealii::cross_product_3d(arm, force);
+        const Vector3 force = at(node, forces), moment = dealii::cross_product_3d(node.X - centre + at(node, u), force);
         for (unsigned int c = 0; c < dim; ++c)
         {
           sums[n_components * b + c] += force[c];

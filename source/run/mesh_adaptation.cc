@@ -82,7 +82,7 @@ namespace Nodus
     // hanging nodes have no state of their own, but their cells are interpolated
     std::vector<Vector> state_before   = interpolable_vectors(states_.committed, *model_.contact);
     const auto          hanging_before = hanging_constraints(model_.dof_handler);
-    for (unsigned int n = n_displacement_vectors; n < state_before.size(); ++n)
+    for (unsigned int n = n_displacement_vectors(); n < state_before.size(); ++n)
       hanging_before.distribute(state_before[n]);
     std::vector<Vector>         ghosted;
     std::vector<const Vector *> pointers;

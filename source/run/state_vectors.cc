@@ -40,9 +40,9 @@ namespace Nodus
       {
         const std::vector<double> values = numbers(k);
         for (unsigned int i = 0; i < values.size(); ++i)
-          vectors[n_displacement_vectors + i / dim](surfaces.nodes()[k].dofs[i % dim]) = values[i];
+          vectors[n_displacement_vectors() + i / dim](surfaces.nodes()[k].dofs[i % dim]) = values[i];
       }
-      for (unsigned int n = n_displacement_vectors; n < vectors.size(); ++n)
+      for (unsigned int n = n_displacement_vectors(); n < vectors.size(); ++n)
         vectors[n].compress(dealii::VectorOperation::insert);
       return vectors;
     }
@@ -53,7 +53,7 @@ namespace Nodus
     {
       std::vector<double> values(n_slave_numbers());
       for (unsigned int i = 0; i < values.size(); ++i)
-        values[i] = vectors[n_displacement_vectors + i / dim](surfaces.nodes()[k].dofs[i % dim]);
+        values[i] = vectors[n_displacement_vectors() + i / dim](surfaces.nodes()[k].dofs[i % dim]);
       return values;
     }
 
@@ -151,6 +151,11 @@ namespace Nodus
     };
   } // namespace
 
+  unsigned int n_displacement_vectors()
+  {
+    return widths().node_vectors;
+  }
+
   unsigned int n_site_values()
   {
     return widths().site;
@@ -158,7 +163,7 @@ namespace Nodus
 
   unsigned int n_state_vectors()
   {
-    return n_displacement_vectors + (n_slave_numbers() + dim - 1) / dim;
+    return n_displacement_vectors() + (n_slave_numbers() + dim - 1) / dim;
   }
 
   std::vector<double> site_values(const State &state, const unsigned int site)

@@ -11,8 +11,8 @@
 
 namespace Nodus
 {
-  /// Vectors of all nodes come first: displacement, reactions to be released, applied forces, the last motion.
-  constexpr unsigned int n_displacement_vectors = 4;
+  /// Vectors of all nodes, which come first: all that visit_members() calls nodes().
+  unsigned int n_displacement_vectors();
   /// Number of vectors.
   unsigned int n_state_vectors();
 

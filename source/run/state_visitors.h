@@ -118,8 +118,12 @@ namespace Nodus
 
     struct Widths : public Nothing
     {
-      unsigned int site = 0, slave = 0;
+      unsigned int node_vectors = 0, site = 0, slave = 0;
 
+      void nodes(const Vector &)
+      {
+        ++node_vectors;
+      }
       template <typename T>
       void sites(const std::vector<T> &)
       {
