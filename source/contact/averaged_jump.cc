@@ -38,29 +38,27 @@ namespace Nodus
       return at.found() ? ContactGeometry::counted_part(geometry.search[pair].overhang(at, x).norm()) : 0.;
     }
 
-    /// Points of a fixed rule with their closest master points; returns the covered fraction.
+    /// Points of a fixed rule with their closest master points; returns the covered fraction, in local coordinates: it
+    /// follows the points at the rim alone.
     double face_points(const ContactGeometry       &geometry,
                        const unsigned int           pair,
                        const unsigned int           f,
                        const dealii::Quadrature<2> &rule,
                        std::vector<MortarPoint>    &points)
     {
-      const SurfaceGeometry &slave = geometry.slave[pair];
-      double                 area = 0., covered = 0.;
+      const SurfaceGeometry &slave   = geometry.slave[pair];
+      double                 covered = 0.;
       points.clear();
       for (unsigned int q = 0; q < rule.size(); ++q)
       {
-        const double       xi = rule.point(q)[0], eta = rule.point(q)[1];
-        const FaceGeometry point  = slave.at(f, xi, eta);
-        const double       weight = rule.weight(q) * point.area_vector().norm();
-        Projection         master;
-        const double       counts = find_partner(geometry, pair, point.x, slave.normal(f, xi, eta), master);
-        area += weight;
-        covered += counts * weight;
+        const double xi = rule.point(q)[0], eta = rule.point(q)[1];
+        Projection   master;
+        const double counts = find_partner(geometry, pair, slave.at(f, xi, eta).x, slave.normal(f, xi, eta), master);
+        covered += counts * rule.weight(q);
         if (counts > 0.)
           points.push_back({xi, eta, counts * rule.weight(q), master});
       }
-      return covered / area;
+      return covered;
     }
 
     /// A hanging node is where those are that it follows, but for its reference position.

@@ -16,8 +16,8 @@ namespace Nodus
   /// functions and the covered part change (eq. G19-G27). Exact for the discrete integrals, but for
   /// - points that smoothing shifts along the surfaces as these bend, which would couple every force with two rings of
   ///   nodes on both sides (the offsets themselves are in, by parts());
-  /// - the covered part of faces that stick out of the master and are integrated by a fixed rule: it follows the points
-  ///   at the rim, not the change of areas; on rigid triangles not at all;
+  /// - points of a fixed rule that fade out beyond the rim: where the rim is that of rigid triangles, and the change of
+  ///   the normal and the size of the master face there;
   /// - normals that are averaged over the face (AveragedJump::Row::normal).
   class FaceVariation
   {

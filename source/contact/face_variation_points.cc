@@ -283,8 +283,7 @@ namespace Nodus
 
   void FaceVariation::add_fixed_points()
   {
-    unsigned int at      = static_cast<unsigned int>(-1);
-    double       covered = 0.;
+    unsigned int at = static_cast<unsigned int>(-1);
     for (const MortarPoint &point : face_.points)
     {
       if (batch_.n_points == 0 || point.master.face != at)
@@ -294,18 +293,15 @@ namespace Nodus
         number_local(at);
       }
       add_point(point, fixed_gradient(point));
-      covered += point.weight * slave_.at(face_.face, point.xi, point.eta).area_vector().norm();
     }
     flush();
-    d_coverage_ *= face_.coverage / covered;
   }
 
   /// The weight of a point beyond the rim of the master goes with its overhang, and with that the covered part.
   void FaceVariation::fade_out(const MortarPoint &point, const FaceShape &shape, Gradient &gradient)
   {
-    const FaceGeometry x        = slave_.at(face_.face, point.xi, point.eta);
-    const Vector3      beyond   = search_.overhang(point.master, x.x);
-    const double       overhang = beyond.norm();
+    const Vector3 beyond   = search_.overhang(point.master, slave_.at(face_.face, point.xi, point.eta).x);
+    const double  overhang = beyond.norm();
     if (!(overhang > 0.))
       return;
     const FaceShape master_shape(master_.degree(), point.master.xi, point.master.eta);
@@ -318,8 +314,7 @@ namespace Nodus
       fading.segment<3>(3 * (local_.n_slave + n)) -= master_shape.value[n] * slope;
     gradient.row(0) += fading;
     for (unsigned int l = 0; l < local_.size(); ++l)
-      d_coverage_.middleCols<3>(3 * local_.place[l]) +=
-          point.weight * x.area_vector().norm() * fading.segment<3>(3 * l);
+      d_coverage_.middleCols<3>(3 * local_.place[l]) += point.weight * fading.segment<3>(3 * l);
   }
 
   FaceVariation::Gradient FaceVariation::fixed_gradient(const MortarPoint &point)

@@ -401,6 +401,16 @@ namespace
               k.overhang = overhang;
               k.friction = Friction::stick;
             });
+      // a row of points that fades out (eq. J7)
+      add(base,
+          ", by face, overhang, stick",
+          [](Kind &k)
+          {
+            k.integration = Pair::Integration::face;
+            k.overhang    = 0.04;
+            k.friction    = Friction::stick;
+            k.tolerance   = 1e-2; // normal and size of the faces at the rim are taken as they are
+          });
       add(base,
           ", slave normals, stick",
           [](Kind &k)

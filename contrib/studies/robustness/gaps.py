@@ -175,10 +175,8 @@ class Pair:
         """Points of a fixed rule, which fade out beyond the rim (J7), and the covered fraction of each face."""
         rule = "Gauss", 6 if self.degree == 1 else 10
         f, s, t, w, m, a, b, over = self.points(*rule, TOLERANCE, last)
-        _, t1, t2 = self.slave.at(f, s, t)
-        whole = w * np.linalg.norm(np.cross(t1, t2), axis=1)
         counts = np.where(m >= 0, np.maximum(0, 1 - 2 * over / TOLERANCE), 0)
-        coverage = np.bincount(f, whole * counts, len(self.faces)) / np.bincount(f, whole, len(self.faces))
+        coverage = np.bincount(f, w * counts, len(self.faces))  # in local coordinates
         keep = counts > 0
         return [v[keep] for v in (f, s, t, w * counts, m, a, b)] + [coverage]
 
