@@ -111,10 +111,8 @@ namespace Nodus
           site, variation.columns(), compliance * state.lambda[site] * variation.rows().row(variation.area()));
     if (jump_.middle(site) != jump_.end(site))
     {
-      const unsigned int p      = surfaces_.pair(site);
-      const auto         shares = MomentBalance::shares(pairs_[p], geometry_.rigid[p] != nullptr);
-      variation.balance(
-          jump_, surfaces_, site, shares, geometry_.master[p], pairing_[site], geometry_.slave[p].positions());
+      const unsigned int p = surfaces_.pair(site);
+      variation.balance(jump_, surfaces_, site, geometry_.master[p], pairing_[site], geometry_.slave[p].positions());
     }
     couple(site, state, residual, law(site, state, residual, follows), variation, couplings);
   }

@@ -8,14 +8,30 @@
 
 namespace Nodus
 {
+  namespace
+  {
+    /// How far the spread is from where nothing to where all of it counts.
+    double way_to_full_spread(const double spread, const double size)
+    {
+      using namespace MomentBalance;
+      return std::clamp((spread / (size * size) - no_spread) / (full_spread - no_spread), 0., 1.);
+    }
+  } // namespace
+
+  double MomentBalance::counted_part(const double spread, const double size)
+  {
+    const double t = way_to_full_spread(spread, size);
+    return t * t * (3. - 2. * t);
+  }
+
   std::pair<double, double> MomentBalance::inverse_of_spread(const double spread, const double size)
   {
-    const double part = spread / (size * size);
-    if (!(part > no_spread))
+    const double part = counted_part(spread, size);
+    if (part == 0.)
       return {0., 0.};
-    const double t      = std::min(1., (part - no_spread) / (full_spread - no_spread));
+    const double t      = way_to_full_spread(spread, size);
     const double growth = 6. * t * (1. - t) / ((full_spread - no_spread) * size * size);
-    const double value  = t * t * (3. - 2. * t) / spread;
+    const double value  = part / spread;
     return {value, (growth - value) / spread};
   }
 
@@ -88,17 +104,89 @@ namespace Nodus
         for (unsigned int n = 0; n < weights.size(); ++n)
           add(master, carrier.nodes()[n], -weights[n], 1. / weights.size());
       }
+      void share_as_weighted()
+      {
+        for (Entry &e : master)
+          e.share += std::abs(e.weight);
+      }
       /// The nodes around those of a meshed master share in what balances moments.
-      void share_around(const SurfaceGeometry &geometry, const Vector3 &normal)
+      void share_around(const SurfaceGeometry &geometry, const Vector3 &normal, const double factor)
       {
         const unsigned int n = master.size();
         for (unsigned int i = 0; i < n; ++i)
-          geometry.for_nodes_around(master[i].node,
-                                    -normal,
-                                    [&, share = std::abs(master[i].weight)](const unsigned int node, const double part)
-                                    { add(master, node, 0., share * part); });
+          geometry.for_nodes_around(
+              master[i].node,
+              -normal,
+              [&, share = factor * std::abs(master[i].weight)](const unsigned int node, const double part)
+              { add(master, node, 0., share * part); });
       }
     };
+
+    /// Where the nodes of a master are, as they share in what balances moments, across the normal.
+    struct Spread
+    {
+      Spread(const std::vector<Entry> &master, const std::array<Vector3, 2> &basis, const std::vector<Point> &x)
+          : b(basis)
+      {
+        double sum = 0.;
+        for (const Entry &e : master)
+        {
+          mean += e.share * x[e.node];
+          sum += e.share;
+        }
+        mean /= sum;
+        Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+        for (const Entry &e : master)
+        {
+          const Eigen::Vector2d y = components(x[e.node] - mean);
+          squares += e.share * y * y.transpose();
+        }
+        axes.computeDirect(squares);
+      }
+      Eigen::Vector2d components(const Vector3 &v) const
+      {
+        return {v * b[0], v * b[1]};
+      }
+      Eigen::Matrix2d inverse(const double size) const
+      {
+        Eigen::Vector2d value;
+        for (unsigned int i = 0; i < 2; ++i)
+          value[i] = inverse_of_spread(axes.eigenvalues()[i], size).first;
+        return axes.eigenvectors() * value.asDiagonal() * axes.eigenvectors().transpose();
+      }
+
+      std::array<Vector3, 2>                         b;
+      Vector3                                        mean;
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+    };
+
+    /// How the nodes of a row share. Averages over segments are of one node alone where that lies on the slave node:
+    /// those around it take part where its own have no spread.
+    Shares share(const ContactPairParameters &pair,
+                 const ContactGeometry       &geometry,
+                 const unsigned int           p,
+                 const SitePairing           &site,
+                 Row                         &row)
+    {
+      const bool averaged = pair.scheme == ContactPairParameters::Scheme::averaged;
+      Shares     shares;
+      if (averaged && (geometry.rigid[p] != nullptr || pair.integration == ContactPairParameters::Integration::segment))
+      {
+        shares.weighted = 1.;
+        row.share_as_weighted();
+      }
+      if (geometry.rigid[p] != nullptr)
+        return shares;
+      shares.around = 1.;
+      if (shares.weighted > 0.)
+      {
+        const Spread spread(row.master, MomentBalance::basis(site), geometry.slave[p].positions());
+        shares.around -= counted_part(spread.axes.eigenvalues()[0], row.size);
+      }
+      if (shares.around > 0.)
+        row.share_around(geometry.master[p], site.normal, shares.around);
+      return shares;
+    }
 
     /// Balances moments. Averaged gaps vanish in the mean alone: gaps that are left between the points, on masters that
     /// are not flat, put the mean master point beside the normal through the slave node, and forces along that would
@@ -111,46 +199,28 @@ namespace Nodus
     void balance_moment(
         const SitePairing &site, const double adjustment, const bool friction, const std::vector<Point> &x, Row &row)
     {
-      Vector3 apart, mean;
-      double  sum = 0.;
+      Vector3 apart;
       for (auto *const side : {&row.slave, &row.master})
         for (Entry &e : *side)
         {
           e.unbalanced = e.weight;
           apart += e.weight * x[e.node];
         }
-      for (const Entry &e : row.master)
-      {
-        mean += e.share * x[e.node];
-        sum += e.share;
-      }
-      mean /= sum;
-      const auto      b          = basis(site);
-      const auto      components = [&](const Vector3 &v) { return Eigen::Vector2d(v * b[0], v * b[1]); };
-      Eigen::Matrix2d spread     = Eigen::Matrix2d::Zero();
-      for (const Entry &e : row.master)
-      {
-        const Eigen::Vector2d y = components(x[e.node] - mean);
-        spread += e.share * y * y.transpose();
-      }
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
-      Eigen::Vector2d                                      value;
-      for (unsigned int i = 0; i < 2; ++i)
-        value[i] = inverse_of_spread(axes.eigenvalues()[i], row.size).first;
-      const Eigen::Matrix2d inverse = axes.eigenvectors() * value.asDiagonal() * axes.eigenvectors().transpose();
+      const Spread          spread(row.master, basis(site), x);
+      const Eigen::Matrix2d inverse = spread.inverse(row.size);
       const double          limit   = largest_shift * row.size;
-      Eigen::Vector2d       beside  = components(apart);
+      Eigen::Vector2d       beside  = spread.components(apart);
       beside *= std::min(1., limit / std::max(beside.norm(), std::numeric_limits<double>::min()));
       double lever = apart * site.normal - adjustment;
       for (Entry &e : row.master)
       {
-        const Vector3         arm    = x[e.node] - mean;
-        const Eigen::Vector2d slope  = e.share * inverse * components(arm);
+        const Vector3         arm    = x[e.node] - spread.mean;
+        const Eigen::Vector2d slope  = e.share * inverse * spread.components(arm);
         const double          change = -slope.dot(beside), along = change * (arm * site.normal);
         e.weight += change;
         for (unsigned int i = 0; i < 2; ++i)
           if (friction && site.tangent_free[i]) // there is no friction along the other one
-            e.turn += slope[i] * b[i];
+            e.turn += slope[i] * spread.b[i];
         row.offset -= along * site.normal;
         lever += along;
       }
@@ -159,12 +229,12 @@ namespace Nodus
     }
 
     /// Of a slave node with averages over its faces.
-    void make_averaged(const AveragedJump::Row &averages, const Shares shares, Row &row)
+    void make_averaged(const AveragedJump::Row &averages, Row &row)
     {
       for (const AveragedJump::Entry &e : averages.slave)
         row.slave.push_back({e.node, e.weight, {}, 0., 0.});
       for (const AveragedJump::Entry &e : averages.master)
-        row.master.push_back({e.node, e.weight, {}, 0., shares == Shares::weighted ? std::abs(e.weight) : 0.});
+        row.master.push_back({e.node, e.weight, {}, 0., 0.});
       row.offset = averages.offset - averages.rigid.x;
       row.size   = std::sqrt(averages.whole);
     }
@@ -217,6 +287,7 @@ namespace Nodus
     start_.assign(1, 0);
     middle_.clear();
     offset_.clear();
+    shares_.clear();
     rigid_.clear();
     stuck_.clear();
     normal_.clear();
@@ -227,16 +298,17 @@ namespace Nodus
     {
       const unsigned int p      = surfaces.pair(s);
       const bool         paired = pairing[s].found || pairing[s].held;
-      const Shares       shares = MomentBalance::shares(pairs[p], geometry.rigid[p] != nullptr);
+      Shares             shares;
       row.clear();
       if (paired && pairs[p].scheme == ContactPairParameters::Scheme::averaged)
-        make_averaged(averaged.row(s), shares, row);
+        make_averaged(averaged.row(s), row);
       else if (paired && (pairing[s].master.found() || geometry.rigid[p] != nullptr))
         make_pointwise(s, geometry, pairing[s].master, row);
-      if (!row.master.empty() && shares == Shares::around)
-        row.share_around(geometry.master[p], pairing[s].normal);
       if (!row.master.empty())
+      {
+        shares = share(pairs[p], geometry, p, pairing[s], row);
         balance_moment(pairing[s], status.adjustment(s), status.has_friction(p), geometry.slave[p].positions(), row);
+      }
       if (const RigidSurface *const rigid = geometry.rigid[p]; rigid != nullptr && !row.slave.empty())
         row.rigid = rigid->part(row.mean_slave_point(geometry.slave[p].positions()));
       entries_.insert(entries_.end(), row.slave.begin(), row.slave.end());
@@ -247,6 +319,7 @@ namespace Nodus
       normal_.push_back(pairing[s].normal);
       lever_.push_back(row.lever);
       size_.push_back(row.size);
+      shares_.push_back(shares);
       rigid_.push_back(row.rigid);
     }
   }

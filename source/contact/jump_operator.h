@@ -17,29 +17,21 @@ namespace Nodus
   {
     /// Largest shift of a master point, in sizes of the surface: of sites far from contact.
     constexpr double largest_shift = 0.5;
-    /// Mean square distance of the master nodes, over the square of that size, at which their point is not moved, as
-    /// they are in a line, and from which on it is in full.
+    /// Mean square distance of the master nodes, over the square of that size, at which their point is not moved, or
+    /// those around take part in full, as they are in a line; and from which on they move it by themselves.
     constexpr double no_spread = 1e-6, full_spread = 1e-5;
+    /// The part of 1 that a spread of 10^-6 (0) to 10^-5 (1) sizes squared counts with.
+    double counted_part(double spread, double size);
     /// 1 / @p spread [1/area], or less where that is little, and its derivative. @p size: of the surface [length].
     std::pair<double, double> inverse_of_spread(double spread, double size);
     /// Unit vectors across the normal of a site and each other. The first tangents that carry friction are these.
     std::array<Vector3, 2> basis(const SitePairing &site);
-    /// How master nodes share in what balances moments: as they are weighted (averages over overlaps and over rigid
-    /// masters), evenly (what carries a rigid master), or as the nodes around them are weighted: rows may be on an edge
-    /// alone, and a closest point passes from face to face.
-    enum class Shares
+    /// How master nodes share in what balances moments: as they are weighted, as the nodes around them are weighted
+    /// (eq. J6), or the sum of both. Neither where they share evenly (what carries a rigid master).
+    struct Shares
     {
-      weighted,
-      even,
-      around
+      double weighted = 0., around = 0.; ///< factors of the weights
     };
-    inline Shares shares(const ContactPairParameters &pair, const bool rigid)
-    {
-      if (pair.scheme == ContactPairParameters::Scheme::averaged &&
-          (rigid || pair.integration == ContactPairParameters::Integration::segment))
-        return Shares::weighted;
-      return rigid ? Shares::even : Shares::around;
-    }
   } // namespace MomentBalance
 
   /// G: the jump of each contact site as a combination of nodal values, slave minus master (eq. 18, 22).
@@ -117,6 +109,11 @@ namespace Nodus
     {
       return size_[site];
     }
+    /// How the nodes of the master share in what balances the moments of a site.
+    const MomentBalance::Shares &shares(const unsigned int site) const
+    {
+      return shares_[site];
+    }
     /// Jump of the displacement of the increment (eq. K2): with the way of a rigid master and, on a new mesh, what
     /// set_stuck() adds.
     Vector3 jump_of_increment(const unsigned int site, const std::vector<Vector3> &increment) const
@@ -144,12 +141,13 @@ namespace Nodus
     }
 
   private:
-    std::vector<Entry>        entries_;
-    std::vector<unsigned int> start_, middle_;
-    std::vector<Vector3>      offset_, normal_;
-    std::vector<double>       lever_, size_;
-    std::vector<RigidPart>    rigid_;
-    std::vector<Vector3>      stuck_; ///< empty, or per site
+    std::vector<Entry>                 entries_;
+    std::vector<unsigned int>          start_, middle_;
+    std::vector<Vector3>               offset_, normal_;
+    std::vector<double>                lever_, size_;
+    std::vector<MomentBalance::Shares> shares_;
+    std::vector<RigidPart>             rigid_;
+    std::vector<Vector3>               stuck_; ///< empty, or per site
   };
 } // namespace Nodus
 

@@ -205,28 +205,27 @@ namespace Nodus
     };
   } // namespace
 
-  void SiteVariation::vary_shares(const JumpOperator         &jump,
-                                  const ContactSurfaces      &surfaces,
-                                  const unsigned int          site,
-                                  const MomentBalance::Shares shares,
-                                  const SurfaceGeometry      &master,
-                                  const Vector3              &normal)
+  void SiteVariation::vary_shares(const JumpOperator    &jump,
+                                  const ContactSurfaces &surfaces,
+                                  const unsigned int     site,
+                                  const SurfaceGeometry &master,
+                                  const Vector3         &normal)
   {
+    const MomentBalance::Shares &shares = jump.shares(site);
     shares_.setZero(nodes_.size(), rows_.cols());
-    for (const JumpOperator::Entry *e = jump.middle(site); e != jump.end(site) && shares != MomentBalance::Shares::even;
-         ++e)
+    for (const JumpOperator::Entry *e = jump.middle(site); e != jump.end(site); ++e)
     {
       const auto   row  = rows_.row(place_of_node_[e->node]);
       const double sign = e->unbalanced > 0. ? 1. : -1.;
-      if (shares == MomentBalance::Shares::weighted)
-        shares_.row(place_of_node_[e->node]) = sign * row;
-      else if (!row.isZero(0.))
+      if (shares.weighted > 0.)
+        shares_.row(place_of_node_[e->node]) += shares.weighted * sign * row;
+      if (shares.around > 0. && !row.isZero(0.))
         master.for_nodes_around(e->node,
                                 -normal,
                                 [&](const unsigned int node, const double part)
                                 {
                                   surfaces.expand(node,
-                                                  sign * part,
+                                                  shares.around * sign * part,
                                                   [&](const unsigned int free_node, const double factor)
                                                   {
                                                     // those around a node of an average that has no weight are missing
@@ -303,13 +302,12 @@ namespace Nodus
     }
   }
 
-  void SiteVariation::balance(const JumpOperator         &jump,
-                              const ContactSurfaces      &surfaces,
-                              const unsigned int          number,
-                              const MomentBalance::Shares shares,
-                              const SurfaceGeometry      &master,
-                              const SitePairing          &site,
-                              const std::vector<Point>   &x)
+  void SiteVariation::balance(const JumpOperator       &jump,
+                              const ContactSurfaces    &surfaces,
+                              const unsigned int        number,
+                              const SurfaceGeometry    &master,
+                              const SitePairing        &site,
+                              const std::vector<Point> &x)
   {
     for (const JumpOperator::Entry *e = jump.begin(number); e != jump.end(number); ++e)
       weight_[place_of_node_[e->node]] = e->unbalanced;
@@ -322,7 +320,7 @@ namespace Nodus
                                      -eigen(site.normal).transpose() * eigen(b[1])};
     const auto            normals = rows_.middleRows<3>(normal());
 
-    vary_shares(jump, surfaces, number, shares, master, site.normal);
+    vary_shares(jump, surfaces, number, master, site.normal);
     vary_moments(b, d_b, moments, x);
 
     if (jump.lever(number) != 0.)

@@ -89,7 +89,6 @@ namespace Nodus
     void balance(const JumpOperator       &jump,
                  const ContactSurfaces    &surfaces,
                  unsigned int              site,
-                 MomentBalance::Shares     shares,
                  const SurfaceGeometry    &master,
                  const SitePairing        &frame,
                  const std::vector<Point> &x);
@@ -107,7 +106,6 @@ namespace Nodus
     void vary_shares(const JumpOperator    &jump,
                      const ContactSurfaces &surfaces,
                      unsigned int           site,
-                     MomentBalance::Shares  shares,
                      const SurfaceGeometry &master,
                      const Vector3         &normal);
     void vary_turns(const SitePairing     &site,
