@@ -47,9 +47,11 @@ namespace Nodus
 
     struct Node : Filtered
     {
-      double  void_tangent[2]; ///< phi where Lambda_i has no friction to carry: open, frictionless or void direction
-      Rows23  tangent;         ///< rows: free tangents, zero where void
-      Column3 axis[2];         ///< both tangents
+      double  void_tangent[2];    ///< phi where Lambda_i has no friction to carry: open or frictionless
+      double  blocked_tangent[2]; ///< phi^2 where nothing can slip along tangent i: Lambda_i is zero by itself
+      Rows23  tangent;            ///< rows: free tangents, zero where blocked
+      Column3 axis[2];            ///< both tangents
+      double  Lambda[2];
     };
 
     struct Jump : Filtered
@@ -100,11 +102,12 @@ namespace Nodus
       static_cast<Filtered &>(node) = filter(from.status, from.shape, point.in_the_mean);
       for (unsigned int i = 0; i < 2; ++i)
       {
-        const bool carries   = from.status.friction && from.frame.tangent_free[i];
-        node.void_tangent[i] = carries ? 0. : from.shape;
-        node.axis[i]         = eigen(from.frame.tangent[i]);
-        node.tangent.row(i) =
-            from.frame.tangent_free[i] ? node.axis[i].transpose().eval() : Column3::Zero().transpose().eval();
+        const bool free         = from.frame.tangent_free[i];
+        node.void_tangent[i]    = free && !from.status.friction ? from.shape : 0.;
+        node.blocked_tangent[i] = free ? 0. : from.shape * from.shape;
+        node.axis[i]            = eigen(from.frame.tangent[i]);
+        node.tangent.row(i)     = free ? node.axis[i].transpose().eval() : Column3::Zero().transpose().eval();
+        node.Lambda[i]          = from.Lambda[i];
         f.Lambda_void[i] += node.void_tangent[i] * from.Lambda[i] * node.axis[i];
       }
       const Column3 Lambda = node.tangent.transpose() * Eigen::Vector2d(from.Lambda[0], from.Lambda[1]);
@@ -218,7 +221,8 @@ namespace Nodus
         r.segment<2>(ia + 1) += law;
         // No friction multiplier where there is no friction (eq. 57-59).
         for (unsigned int t = 0; t < 2 && !f.held; ++t)
-          r(ia + 1 + t) -= W * i.void_tangent[t] * f.Lambda_void[t].dot(i.axis[t]);
+          r(ia + 1 + t) -=
+              W * (i.void_tangent[t] * f.Lambda_void[t].dot(i.axis[t]) + i.blocked_tangent[t] * i.Lambda[t]);
         for (unsigned int c = 0; c < f.n_nodes; ++c)
         {
           const Node        &j  = f.nodes[c];
@@ -230,7 +234,8 @@ namespace Nodus
             A.block<2, 2>(ia + 1, jc + 1) +=
                 Wt / f.h_tau * i.slip * j.slip * i.tangent * (Matrix3::Identity() - f.K_B) * j.tangent.transpose();
           for (unsigned int t = 0; t < 2; ++t) // eq. 47
-            A(ia + 1 + t, jc + 1 + t) -= W * i.void_tangent[t] * j.void_tangent[t] * i.axis[t].dot(j.axis[t]);
+            A(ia + 1 + t, jc + 1 + t) -= W * (i.void_tangent[t] * j.void_tangent[t] * i.axis[t].dot(j.axis[t]) +
+                                              (a == c ? i.blocked_tangent[t] : 0.));
         }
       }
       // The rows of the multipliers in the columns of the jumps are those of the forces, transposed.

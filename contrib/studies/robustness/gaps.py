@@ -234,6 +234,8 @@ class Pair:
             share = np.abs(rows.g[k, masters])
             if self.keys.get("Integration", "segment") == "face":
                 masters, share = self._shares_around(masters, share, rows.normal[k])
+            else:
+                masters, share = self._shares_around_one(masters, share, rows.normal[k], whole[k])
             self._balance(rows, k, masters, share, np.sqrt(whole[k]))
         # nodes without partner have the area of their whole surface
         plain = np.zeros(len(self.nodes))
@@ -265,6 +267,19 @@ class Pair:
                     shares[other] += weight * part / len(beside)
         return np.array(list(shares)), np.array(list(shares.values()))
 
+    def _shares_around_one(self, nodes, weights, normal, area):
+        """Those of the nodes, and (J6) as far as these are in one place or line."""
+        y = (self.bodies.x[nodes] - weights @ self.bodies.x[nodes] / weights.sum()) @ (np.eye(3) - np.outer(normal, normal))
+        smaller = np.linalg.eigvalsh(np.einsum("e,ei,ej->ij", weights, y, y))[1]  # 0 along the normal
+        part = 1 - counted_part(smaller / area)
+        if part == 0:
+            return nodes, weights
+        around, shares = self._shares_around(nodes, weights, normal)
+        total = collections.defaultdict(float, zip(around, part * shares))
+        for node, weight in zip(nodes, weights):
+            total[node] += weight
+        return np.array(list(total)), np.array(list(total.values()))
+
     def _balance(self, rows, k, masters, share, size):
         """(J4), (J5): master weights that put the (mean) master point on the normal through the slave point, and turns for what is
         left along it."""
@@ -276,12 +291,18 @@ class Pair:
         v *= min(1.0, limit / max(length, 1e-300))
         y = (x[masters] - share @ x[masters] / share.sum()) @ across
         values, axes = np.linalg.eigh(np.einsum("e,ei,ej->ij", share, y, y))
-        part = np.clip((values / size**2 - 1e-6) / 9e-6, 0, 1)
-        factor = np.where(part > 0, part**2 * (3 - 2 * part) / np.where(part > 0, values, 1), 0)
+        part = counted_part(values / size**2)
+        factor = np.where(part > 0, part / np.where(part > 0, values, 1), 0)
         slope = share[:, None] * (y @ ((axes * factor) @ axes.T))
         g[masters] -= slope @ v
         if self.friction:
             rows.turn[k, masters] = np.clip(n @ (g @ x), -limit, limit) * slope
+
+
+def counted_part(spread):
+    """The smooth step of section 7 from 1e-6 to 1e-5."""
+    t = np.clip((spread - 1e-6) / 9e-6, 0, 1)
+    return t**2 * (3 - 2 * t)
 
 
 def choose(normals, preferred, sites, choices):
