@@ -187,8 +187,7 @@ def check_resultants(find, state, pair, row):
     find.compare("maximum pressure", abs(largest - float(row["maximum pressure"])) / max(largest, 1e-300), max(SUMS, loops), t, name)
     off = np.abs(v["area"] - pair.area) - pair.area_spread
     find.compare("areas [of the surface around a node]", off / pair.whole, max(AREA, loops), t, name)
-    others = [pair.normal] + [rows.normal for rows in pair.rows.others] if pair.rows else [pair.normal]
-    off = np.min([np.abs(v["normal"] - normal).max(axis=1) for normal in others], axis=0)
+    off = np.abs(v["normal"] - pair.normal).max(axis=1) - pair.normal_spread
     find.compare("normals", off[v["paired"] > 0.5], max(LENGTH, loops), t, name)
 
 

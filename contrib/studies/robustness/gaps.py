@@ -45,10 +45,11 @@ class Rows:
         self.g[sites], self.turn[sites] = 0, 0
 
     def spread(self):
-        """How much other rules change distances (k,) and areas (k,)."""
+        """How much other rules change distances, areas and normals, (k,) each."""
         k = len(self.distance)
         return (max_of([np.abs(other.distance - self.distance) for other in self.others], k),
-                max_of([np.abs(other.area - self.area) for other in self.others], k))  # fmt: skip
+                max_of([np.abs(other.area - self.area) for other in self.others], k),
+                max_of([np.abs(other.normal - self.normal).max(axis=1) for other in self.others], k))  # fmt: skip
 
 
 def max_of(fields, n):
@@ -160,8 +161,8 @@ class Pair:
         return kind, self.degree + 1 if kind == "Gauss" else 2 * self.degree + 1
 
     def integration_points(self):
-        """Distance, face, local coordinates, weights with area, whether they have a partner, whether that is unsure (n,), and
-        normals (n, 3) of the points of an integration point pair."""
+        """Distance, face, local coordinates, weights with area, whether they have a partner, how far they hang over the rim
+        [Projection tolerance] (n,), and normals (n, 3) of the points of an integration point pair."""
         f, xi, eta, w, face, a, b, over = self.points(*self.point_rule(), 2 * TOLERANCE)
         hit = np.where(face >= 0)[0]
         distance, normal = np.full(len(f), -np.inf), self.slave.normal(f, xi, eta, True)
@@ -169,7 +170,7 @@ class Pair:
             normal[hit] = self.normal_of_master(face[hit], a[hit], b[hit])
         apart = self.slave.at(f[hit], xi[hit], eta[hit])[0] - self.master.at(face[hit], a[hit], b[hit])[0]
         distance[hit] = (apart * normal[hit]).sum(1)
-        return distance, f, xi, eta, w * self.slave.element(f, xi, eta), face >= 0, (face >= 0) & (over > 0.9 * TOLERANCE), normal
+        return distance, f, xi, eta, w * self.slave.element(f, xi, eta), face >= 0, over / TOLERANCE, normal
 
     def _face_points(self, last):
         """Points of a fixed rule, which fade out beyond the rim (J7), and the covered fraction of each face."""

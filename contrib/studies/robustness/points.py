@@ -12,10 +12,14 @@ LAW, LAW_LOOPS, DEPTH = 1e-4, 2e-3, 0.05
 
 class Points:
     """Of a pair (gaps.Pair with force, area) at one time. phi (q, nodes) over all slave nodes, w (q,) areas, d (q,) distances,
-    positive inside, -inf without partner, normal (q, 3); unsure (q,): only the history tells whether they have one."""
+    positive inside, -inf without partner, normal (q, 3); unsure (q,): only the history tells whether they have one, fresh (q,):
+    whether they would find one without it; place (q,): equal numbers at the same place."""
 
     def __init__(self, pair):
-        self.d, f, xi, eta, self.w, self.found, self.unsure, self.normal = pair.integration_points()
+        self.d, f, xi, eta, self.w, self.found, over, self.normal = pair.integration_points()
+        self.unsure, self.fresh = self.found & (over > 0.9), self.found & (over <= 1)
+        x = np.round(pair.slave.at(f, xi, eta)[0] / (1e-4 * pair.cell))
+        self.place = np.unique(x, axis=0, return_inverse=True)[1].ravel()
         self.phi = np.zeros((len(f), len(pair.nodes)))
         np.put_along_axis(self.phi, pair.faces[f], shape(pair.degree, xi, eta)[0], axis=1)
         self.weighted = self.w[:, None] * self.phi
@@ -49,20 +53,29 @@ def multipliers(points, pair, augmentation, found, regularised):
 
 
 def best_partners(points, pair, augmentation, regularised):
-    """multipliers() with the choice of partners that the files leave open: those points of which only the history tells whether
-    they have one change sides one at a time, until none makes the laws fit better."""
-    found = points.found.copy()
-    best = multipliers(points, pair, augmentation, found, regularised)
-    open_choices = np.flatnonzero(points.found & points.unsure)
+    """multipliers() with the choice of partners that the files leave open: of points of which only the history tells whether they
+    have one. None has that belongs to a node without force, for it would be closed. The others begin with all or with those that would
+    find one today, and change sides, first those of a place together, then each, until no change makes the laws fit better."""
+    idle = np.abs(pair.force).max(axis=1) == 0
+    unsure = points.unsure & (points.d > 0)
+    lost = unsure & (points.phi[:, idle] != 0).any(axis=1)
+    open_choices = np.flatnonzero(unsure & ~lost)
+    groups = [open_choices[points.place[open_choices] == place] for place in np.unique(points.place[open_choices])]
+    best = None
+    for start in (points.found, np.where(unsure, points.fresh, points.found)):
+        found = start & ~lost
+        trial = multipliers(points, pair, augmentation, found, regularised)
+        if best is None or trial[2].max() < best[2].max():
+            best, chosen = trial, found.copy()
     for _ in open_choices:
         before = best[2].max()
-        for q in open_choices:
-            found[q] = not found[q]
-            trial = multipliers(points, pair, augmentation, found, regularised)
+        for group in groups + [[q] for q in open_choices]:
+            chosen[group] = ~chosen[group]
+            trial = multipliers(points, pair, augmentation, chosen, regularised)
             if trial[2].max() < best[2].max():
                 best = trial
             else:
-                found[q] = not found[q]
+                chosen[group] = ~chosen[group]
         if best[2].max() == before:
             break
     return best
