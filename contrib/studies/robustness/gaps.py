@@ -93,7 +93,9 @@ class Pair:
         if self.kind == "slave":
             choices = np.arange(len(x))[found], self.node_normal[found]
         else:
-            choices = ties[0], self.normal_of_master(*ties[1:])
+            choices = ties[0], self.normal_of_master(*ties[1:4])
+        over[ties[0]] = np.inf
+        np.minimum.at(over, ties[0], ties[4])  # whether a node has a partner depends on the face
         if self.keys["Scheme"] == "integration point":  # frames of the multipliers alone
             rows.normal[:] = self.node_normal
             beyond = np.where(found & (over > 0.9 * TOLERANCE))[0]

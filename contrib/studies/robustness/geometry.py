@@ -200,7 +200,7 @@ class Surface:
     def closest(self, p, normal, last=False):
         """Closest points of faces that do not look along `normal` (far sides). p, normal: (n, 3). Returns face (-1: none), xi, eta,
         how far the point hangs over the rim [face sizes], (n,) each; and ties, which single precision does not tell apart: point,
-        face, xi, eta. Of these the first face is taken, or the last one."""
+        face, xi, eta, overhang. Of these the first face is taken, or the last one."""
         ties = []
         face, xi, eta = np.full(len(p), -1), np.zeros(len(p)), np.zeros(len(p))
         middle = np.full(len(self.faces), 0.5)
@@ -221,15 +221,19 @@ class Surface:
             best = order[np.unique(q[order], return_index=True)[1]]
             ties.append(np.stack([start + q[tie], f[tie], s[tie], t[tie]]))
             face[start + q[best]], xi[start + q[best]], eta[start + q[best]] = f[best], s[best], t[best]
+        ties = np.concatenate(ties, axis=1) if ties else np.zeros((4, 0))
+        q, f, s, t = ties[0].astype(int), ties[1].astype(int), ties[2], ties[3]
         over = np.zeros(len(p))
         hit = np.where(face >= 0)[0]
-        at_rim = np.stack([xi <= 0, xi >= 1, eta <= 0, eta >= 1], 1)[hit] & self.rim[face[hit]]
-        hit = hit[at_rim.any(axis=1)]
-        n = self.normal(face[hit], xi[hit], eta[hit], False)
-        r = p[hit] - self.at(face[hit], xi[hit], eta[hit])[0]
-        over[hit] = np.linalg.norm(r - (r * n).sum(1)[:, None] * n, axis=1) / self.size[face[hit]]
-        ties = np.concatenate(ties, axis=1) if ties else np.zeros((4, 0))
-        return face, xi, eta, over, (ties[0].astype(int), ties[1].astype(int), ties[2], ties[3])
+        over[hit] = self._overhang(p[hit], face[hit], xi[hit], eta[hit])
+        return face, xi, eta, over, (q, f, s, t, self._overhang(p[q], f, s, t))
+
+    def _overhang(self, p, f, xi, eta):
+        """How far points hang over the rim at their closest points [face sizes]."""
+        at_rim = np.stack([xi <= 0, xi >= 1, eta <= 0, eta >= 1], 1) & self.rim[f]
+        n = self.normal(f, xi, eta, False)
+        r = p - self.at(f, xi, eta)[0]
+        return np.linalg.norm(r - (r * n).sum(1)[:, None] * n, axis=1) / self.size[f] * at_rim.any(axis=1)
 
     def _project(self, p, f):
         """Local coordinates of the points of faces f that are closest to p, by Gauss-Newton steps within the square."""
