@@ -176,7 +176,7 @@ namespace Nodus
 
   double AveragedJump::Face::dual_part() const
   {
-    return std::clamp((coverage - dual_coverage) * dual_growth, 0., 1.);
+    return std::clamp((coverage.fraction - dual_coverage) * dual_growth, 0., 1.);
   }
 
   double AveragedJump::Face::dual_slope() const
@@ -195,7 +195,7 @@ namespace Nodus
       face.coverage = segment_points(
           geometry.slave[p], f, geometry.master[p], geometry.search[p], geometry.reach[p], face.points, face.trace);
     else
-      face.coverage = face_points(geometry, p, f, rule, face.points);
+      face.coverage = {face_points(geometry, p, f, rule, face.points)};
   }
 
   void AveragedJump::compute(const std::vector<ContactPairParameters> &pairs,
@@ -221,7 +221,7 @@ namespace Nodus
       {
         if (geometry.slave[p].face(f).owner != rank)
           continue;
-        faces_.push_back({p, f, {}, {}, 0.});
+        faces_.push_back({p, f, {}, {}, {}});
         Face &face = faces_.back();
         find_points(pairs[p], geometry, rule, face);
         mine.push_back(FaceIntegral(pairs[p], surfaces, geometry, face, measure).integrate());

@@ -58,7 +58,7 @@ namespace Nodus
       unsigned int             pair, face;
       std::vector<MortarPoint> points;
       SegmentTrace             trace; ///< of segments; empty for a fixed rule
-      double                   coverage = 0.;
+      Coverage                 coverage;
 
       /// Part of the dual functions in psi, the rest being hats, and how it changes with the coverage.
       double dual_part() const;

@@ -40,7 +40,8 @@ namespace Nodus
       hat_.value.setZero(m, n_columns_);
       hat_.derivative.setZero(m * n_columns_, size);
     }
-    d_coverage_.setZero(1, size);
+    for (Matrix *const rate : {&d_coverage_.fraction, &d_coverage_.counted})
+      rate->setZero(1, size);
     take_exact_areas();
     if (!face.points.empty())
       add_all_points();
@@ -318,11 +319,18 @@ namespace Nodus
   }
 
   /// With C = M^-1 U, U being the integrals with phi, and H those with hats, a row is
-  /// scale (part area C + (1 - part) H), the scale such that dual functions have their exact areas.
+  /// scale (part area C + (1 - part) H), the scale such that dual functions have their exact areas, times the part that
+  /// the points count with.
   void FaceVariation::finish()
   {
     const unsigned int m = mass_.value.rows(), n = n_columns_ - first_;
     result_.setZero(m * n_columns_, 3 * nodes_.size());
+    if (face_.coverage.counted < 1.)
+    {
+      exact_.derivative *= face_.coverage.counted;
+      exact_.derivative.noalias() += exact_.value * d_coverage_.counted;
+      exact_.value *= face_.coverage.counted;
+    }
     if (face_.points.empty())
       return;
     if (part_ == 0.)
@@ -374,9 +382,9 @@ namespace Nodus
       const Matrix             derivative =
           part_ * (total * result_.middleRows(a * n_columns_, n_columns_) + C.row(a).transpose() * d_total) +
           (1. - part_) * hat_.derivative.middleRows(a * n_columns_, n_columns_) +
-          face_.dual_slope() * side.transpose() * d_coverage_;
+          face_.dual_slope() * side.transpose() * d_coverage_.fraction;
       const double S = sum[area()], scale = 1. + part_ * (exact_.value(a, 0) / S - 1.);
-      const Matrix d_scale = face_.dual_slope() * (exact_.value(a, 0) / S - 1.) * d_coverage_ +
+      const Matrix d_scale = face_.dual_slope() * (exact_.value(a, 0) / S - 1.) * d_coverage_.fraction +
                              part_ / S * (exact_.derivative.row(a) - exact_.value(a, 0) / S * derivative.row(area()));
       result_.middleRows(a * n_columns_, n_columns_) = scale * derivative + sum.transpose() * d_scale;
       part_weight_.row(a) = scale * (part_ * total * parts.row(a) + (1. - part_) * hat_.parts.row(a));

@@ -11,6 +11,9 @@
 
 namespace Nodus
 {
+  template <int columns>
+  struct SegmentFrame;
+
   /// What a slave face adds to the rows of its slave nodes (AveragedJump, before the division by their areas), and how
   /// that follows the nodes: integration points move with the overlaps, or slide on the master; their areas, the dual
   /// functions and the covered part change (eq. G19-G27). Exact for the discrete integrals, but for
@@ -117,10 +120,11 @@ namespace Nodus
     {
       Matrix value, derivative, parts;
     };
-    /// For faces that have this many components of nodes together.
-    template <int columns>
-    struct SegmentFrame;
-
+    /// Derivatives of what the points cover.
+    struct CoverageRates
+    {
+      Matrix fraction, counted;
+    };
     void number_nodes();
     void number_local(unsigned int master_face);
     void add_all_points();
@@ -165,7 +169,8 @@ namespace Nodus
     Local                     local_;
     Batch                     batch_;
     Integrals                 mass_, phi_, hat_, exact_; ///< of phi phi^T, of columns times phi and hats, of phi
-    Matrix                    d_coverage_, part_weight_, result_;
+    CoverageRates             d_coverage_;
+    Matrix                    part_weight_, result_;
   };
 } // namespace Nodus
 

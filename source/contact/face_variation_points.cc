@@ -1,4 +1,5 @@
 #include "contact/face_variation.h"
+#include "contact/segment_frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,26 +12,10 @@ namespace Nodus
 {
   namespace
   {
-    /// Edges that are as parallel as this (sine) have no crossing that follows both: matching faces.
-    constexpr double parallel = 1e-6;
     /// Corners of an overlap that are in a line span triangles without area. Their points have next to no weight; this
     /// bounds the derivative of its logarithm.
     constexpr double smallest_sine = 1e-10;
 
-    using Plane2 = Eigen::Vector2d;
-
-    double cross(const Plane2 &a, const Plane2 &b)
-    {
-      return a[0] * b[1] - a[1] * b[0];
-    }
-    Eigen::RowVector3d eigen(const Vector3 &v)
-    {
-      return {v[0], v[1], v[2]};
-    }
-    Plane2 plane_point(const dealii::Point<2> &p)
-    {
-      return {p[0], p[1]};
-    }
     /// x^alpha with x^alpha . x_beta = delta, in the tangent plane.
     std::array<Vector3, 2> dual_tangents(const FaceGeometry &x)
     {
@@ -68,118 +53,6 @@ namespace Nodus
     }
     return result;
   }
-  /// The plane of a slave cell and how it tilts; motions in it leave its origin and its spin out, on which nothing
-  /// depends.
-  template <int columns>
-  struct FaceVariation::SegmentFrame
-  {
-    using Row  = Eigen::Matrix<double, 1, columns, Eigen::RowMajor>;
-    using Row2 = Eigen::Matrix<double, 2, columns, Eigen::RowMajor>;
-
-    SegmentFrame(const SurfaceGeometry &slave, const unsigned int f, const unsigned int cell)
-        : corner(corners(slave, f, cell))
-        , plane(corner, slave.face(f).orientation)
-        , tilt(Row2::Zero())
-        , cell_area(Row::Zero())
-    {
-      for (unsigned int i = 0; i < 2; ++i)
-        axes.row(i) = eigen(plane.axis[i]);
-      const Vector3 d[2]       = {corner[2] - corner[0], corner[3] - corner[1]};
-      const Vector3 twice_area = dealii::cross_product_3d(d[0], d[1]);
-      area                     = 0.5 * twice_area.norm();
-      const auto add           = [&](auto &&row, const Vector3 &n, const double factor)
-      {
-        const Eigen::RowVector3d first  = factor * eigen(dealii::cross_product_3d(d[1], n)),
-                                 second = factor * eigen(dealii::cross_product_3d(n, d[0]));
-        for (const auto &[at, value] : {std::make_pair(2u, first), std::make_pair(3u, second)})
-        {
-          row.template segment<3>(3 * cell_node(slave.degree(), cell, at)) += value;
-          row.template segment<3>(3 * cell_node(slave.degree(), cell, at - 2)) -= value;
-        }
-      };
-      for (unsigned int i = 0; i < 2; ++i)
-        add(tilt.row(i), plane.axis[i], slave.face(f).orientation / (2. * area));
-      add(cell_area.row(0), twice_area / twice_area.norm(), 0.5);
-    }
-    static std::array<Point, 4> corners(const SurfaceGeometry &surface, const unsigned int f, const unsigned int cell)
-    {
-      std::array<Point, 4> result;
-      for (unsigned int i = 0; i < 4; ++i)
-        result[i] = surface.positions()[surface.face(f).nodes[cell_node(surface.degree(), cell, i)]];
-      return result;
-    }
-
-    double height(const Point &x) const
-    {
-      return (x - plane.origin) * plane.normal;
-    }
-    Plane2 in_plane(const Vector3 &v) const
-    {
-      return {v * plane.axis[0], v * plane.axis[1]};
-    }
-    /// Adds the motion of a corner of the slave cell, or of the master one.
-    void add_corner(const unsigned int node, const Point &x, const double factor, Row2 &motion) const
-    {
-      motion.template middleCols<3>(3 * node) += factor * axes;
-      motion -= factor * height(x) * tilt;
-    }
-    Row2 motion(const SegmentTrace::Polygon &polygon,
-                const unsigned int           i,
-                const unsigned int           degree,
-                const unsigned int           n_slave) const;
-
-    std::array<Point, 4>        corner, master_corner;
-    CellPlane                   plane;
-    Eigen::Matrix<double, 2, 3> axes;
-    double                      area;
-    Row2                        tilt; ///< in-plane components of the change of the normal
-    Row                         cell_area;
-    std::array<Row2, 16>        corners_motion; ///< of the polygon
-  };
-
-  template <int columns>
-  typename FaceVariation::SegmentFrame<columns>::Row2
-  FaceVariation::SegmentFrame<columns>::motion(const SegmentTrace::Polygon &polygon,
-                                               const unsigned int           i,
-                                               const unsigned int           degree,
-                                               const unsigned int           n_slave) const
-  {
-    using Corner         = SegmentTrace::Corner;
-    const Corner &origin = polygon.corner[i];
-    const auto    vertex = [&](const bool master, const unsigned int at, const double factor, Row2 &sum)
-    {
-      if (master)
-        add_corner(n_slave + cell_node(degree, polygon.master_cell, at), master_corner[at], factor, sum);
-      else
-        add_corner(cell_node(degree, polygon.cell, at), corner[at], factor, sum);
-    };
-    Row2 result = Row2::Zero();
-    if (origin.kind != Corner::crossing)
-    {
-      const bool master = origin.kind == Corner::of_master;
-      vertex(master, master ? origin.master[0] : origin.slave[0], 1., result);
-      return result;
-    }
-    // The point stays on both edges: it goes along with the master edge, and slides on that as far as the slave edge
-    // moves across itself.
-    const Plane2 p = plane_point(plane(master_corner[origin.master[0]])),
-                 d = plane_point(plane(master_corner[origin.master[1]])) - p,
-                 a = plane_point(plane(corner[origin.slave[0]])), e = plane_point(plane(corner[origin.slave[1]])) - a,
-                 x         = plane_point(polygon.x[i]);
-    const double on_master = (x - p).dot(d) / d.squaredNorm(), on_slave = (x - a).dot(e) / e.squaredNorm();
-    vertex(true, origin.master[0], 1. - on_master, result);
-    vertex(true, origin.master[1], on_master, result);
-    const double sine = cross(e, d);
-    if (std::abs(sine) < parallel * e.norm() * d.norm())
-      return result;
-    Row2 across = -result;
-    vertex(false, origin.slave[0], 1. - on_slave, across);
-    vertex(false, origin.slave[1], on_slave, across);
-    const Row slide = (e[0] * across.row(1) - e[1] * across.row(0)) / sine;
-    result += d * slide;
-    return result;
-  }
-
   template <int columns>
   void FaceVariation::add_segments()
   {
@@ -192,7 +65,8 @@ namespace Nodus
       const SegmentFrame<columns> frame(slave_, face_.face, cell);
       face_area += frame.area;
       for (unsigned int i = 0; i < local_.n_slave; ++i)
-        d_coverage_.middleCols<3>(3 * i) -= face_.coverage * frame.cell_area.template segment<3>(3 * i);
+        d_coverage_.fraction.middleCols<3>(3 * i) -=
+            face_.coverage.fraction * frame.cell_area.template segment<3>(3 * i);
     }
     std::optional<SegmentFrame<columns>> frame;
     for (unsigned int q = 0; q < face_.points.size(); ++q)
@@ -205,14 +79,15 @@ namespace Nodus
         at = place.polygon;
         number_local(polygon.master);
         frame.emplace(slave_, face_.face, polygon.cell);
-        frame->master_corner = SegmentFrame<columns>::corners(master_, polygon.master, polygon.master_cell);
+        frame->set_master(master_, polygon, local_.n_slave);
         for (unsigned int i = 0; i < polygon.n; ++i)
           frame->corners_motion[i] = frame->motion(polygon, i, degree, local_.n_slave);
       }
       add_point(face_.points[q], segment_gradient<columns>(polygon, place, face_.points[q], *frame));
     }
     flush();
-    d_coverage_ /= face_area;
+    d_coverage_.fraction /= face_area;
+    d_coverage_.counted /= face_area;
   }
 
   template <int columns>
@@ -232,11 +107,24 @@ namespace Nodus
     Eigen::Matrix<double, n_coordinates, columns, Eigen::RowMajor> result;
     const Row                                                      log_area =
         (d_a.row(0) * b[1] - d_a.row(1) * b[0] + a[0] * d_b.row(1) - a[1] * d_b.row(0)) /
-        std::max(twice_area, smallest_sine * (a.squaredNorm() + b.squaredNorm()) + std::numeric_limits<double>::min());
-    if (face_.dual_slope() > 0.)
+            std::max(twice_area,
+                     smallest_sine * (a.squaredNorm() + b.squaredNorm()) + std::numeric_limits<double>::min()) +
+        frame.log_part;
+    if (face_.dual_slope() > 0. || face_.coverage.counted < 1.)
+    {
+      // f = S^2/(A T), counted = T/S, with the sums S and T of the areas times parts, and squares of parts
+      const auto [fraction, counted] = face_.coverage;
+      const double area = polygon.part * twice_area * rule.weight(place.q) / counted, relative = polygon.part / counted;
+      const Row    squared = relative * (log_area + frame.log_part);
       for (unsigned int l = 0; l < local_.size(); ++l)
-        d_coverage_.middleCols<3>(3 * local_.place[l]) +=
-            twice_area * rule.weight(place.q) * log_area.template segment<3>(3 * l);
+      {
+        const unsigned int to = 3 * local_.place[l];
+        d_coverage_.fraction.middleCols<3>(to) +=
+            area * (2. * log_area.template segment<3>(3 * l) - squared.template segment<3>(3 * l));
+        d_coverage_.counted.middleCols<3>(to) +=
+            area * counted / fraction * (squared.template segment<3>(3 * l) - log_area.template segment<3>(3 * l));
+      }
+    }
 
     // where the point is on the facet
     const FaceShape    shape(slave_.degree(), point.xi, point.eta);
@@ -314,7 +202,7 @@ namespace Nodus
       fading.segment<3>(3 * (local_.n_slave + n)) -= master_shape.value[n] * slope;
     gradient.row(0) += fading;
     for (unsigned int l = 0; l < local_.size(); ++l)
-      d_coverage_.middleCols<3>(3 * local_.place[l]) += point.weight * fading.segment<3>(3 * l);
+      d_coverage_.fraction.middleCols<3>(3 * local_.place[l]) += point.weight * fading.segment<3>(3 * l);
   }
 
   FaceVariation::Gradient FaceVariation::fixed_gradient(const MortarPoint &point)

@@ -12,9 +12,6 @@ namespace Nodus
   {
     using Point2 = dealii::Point<2>;
 
-    /// Faces that look away from each other less than this (cosine) do not overlap: a steep flank, whose points are far
-    /// above the slave though it begins near, would hold the mean gap open.
-    constexpr double facing_cosine = 0.5;
     /// Overlaps below this fraction of a slave cell are round-off.
     constexpr double smallest_overlap = 1e-10;
 
@@ -259,17 +256,19 @@ namespace Nodus
       return dealii::BoundingBox<dim>({low, high});
     }
 
-    /// What a master cell covers of a slave cell, which is @p window in the @p plane; no corners where that is next to
-    /// nothing or they do not face each other.
+    /// What a master cell covers of a slave cell, which is @p window in the @p plane, and the @p part that its points
+    /// count with; no corners where that is next to nothing or they do not face each other.
     Polygon overlap(const Shadow          &window,
                     const CellPlane       &plane,
                     const double           cell_area,
                     const SurfaceGeometry &master,
                     const unsigned int     m,
-                    const unsigned int     master_cell)
+                    const unsigned int     master_cell,
+                    double                &part)
     {
       const auto master_corner = cell_corners(master, m, master_cell);
-      if (cell_normal(master_corner, master.face(m).orientation) * plane.normal > -facing_cosine)
+      part                     = facing(-(cell_normal(master_corner, master.face(m).orientation) * plane.normal)).part;
+      if (part == 0.)
         return Polygon();
       const Shadow shadow(master_corner, plane);
       if (shadow.apart(window))
@@ -297,13 +296,13 @@ namespace Nodus
     return rules[degree - 1];
   }
 
-  double segment_points(const SurfaceGeometry    &slave,
-                        const unsigned int        f,
-                        const SurfaceGeometry    &master,
-                        const MasterSearch       &search,
-                        const double              reach,
-                        std::vector<MortarPoint> &points,
-                        SegmentTrace             &trace)
+  Coverage segment_points(const SurfaceGeometry    &slave,
+                          const unsigned int        f,
+                          const SurfaceGeometry    &master,
+                          const MasterSearch       &search,
+                          const double              reach,
+                          std::vector<MortarPoint> &points,
+                          SegmentTrace             &trace)
   {
     const unsigned int degree = slave.degree();
     const auto        &rule   = segment_rule(degree);
@@ -312,7 +311,7 @@ namespace Nodus
 
     thread_local std::vector<unsigned int> candidates;
     points.clear();
-    double face_area = 0., covered = 0.;
+    double face_area = 0., covered = 0., twice_counted = 0.; // with the part, with its square
     for (unsigned int cell = 0; cell < n_cells(degree); ++cell)
     {
       const auto      corner = cell_corners(slave, f, cell);
@@ -326,10 +325,11 @@ namespace Nodus
       for (const unsigned int m : candidates)
         for (unsigned int master_cell = 0; master_cell < n_cells(degree); ++master_cell)
         {
-          const Polygon polygon = overlap(window, plane, cell_area, master, m, master_cell);
+          double        part;
+          const Polygon polygon = overlap(window, plane, cell_area, master, m, master_cell, part);
           if (polygon.n == 0)
             continue;
-          trace.polygons.push_back({cell, m, master_cell, polygon.n, polygon.corner, polygon.origin});
+          trace.polygons.push_back({cell, m, master_cell, part, polygon.n, polygon.corner, polygon.origin});
           const FlatFace master_face = smooth_face(master, m, plane);
           double         xi = (cell % degree + 0.5) / degree, eta = (cell / degree + 0.5) / degree;
           double master_xi = (master_cell % degree + 0.5) / degree, master_eta = (master_cell / degree + 0.5) / degree;
@@ -344,7 +344,7 @@ namespace Nodus
               {
                 points.clear();
                 trace.places.clear();
-                return 0.; // the face is folded over: no partner
+                return {}; // the face is folded over: no partner
               }
               // the partner lies on the smoothed faces, straight across
               const Point x = slave.position(f, xi, eta);
@@ -357,16 +357,19 @@ namespace Nodus
               const Vector3 gap = master.position(m, master_xi, master_eta) - x;
               if (gap.norm() > reach)
                 continue;
-              const double area = twice_area * rule.weight(q);
+              const double area = part * twice_area * rule.weight(q);
               points.push_back({xi, eta, area / slave_facet.area(xi, eta), {m, master_xi, master_eta}});
               trace.places.push_back({static_cast<unsigned int>(trace.polygons.size() - 1),
                                       static_cast<unsigned char>(t),
                                       static_cast<unsigned char>(q)});
               covered += area;
+              twice_counted += part * area;
             }
           }
         }
     }
-    return covered / face_area;
+    if (points.empty())
+      return {};
+    return {covered * covered / (face_area * twice_counted), twice_counted / covered};
   }
 } // namespace Nodus

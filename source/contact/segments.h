@@ -58,6 +58,7 @@ namespace Nodus
     struct Polygon
     {
       unsigned int                     cell, master, master_cell; ///< master: face
+      double                           part;                      ///< that the points on it count with (eq. J8)
       unsigned int                     n;
       std::array<dealii::Point<2>, 16> x; ///< corners in the plane
       std::array<Corner, 16>           corner;
@@ -72,21 +73,33 @@ namespace Nodus
     std::vector<Place>   places;
   };
 
+  /// How much a master cell counts that looks at a slave cell with this cosine, 1 being straight at it (eq. J8).
+  inline Fading facing(const double cosine)
+  {
+    return Fading(cosine, 0.70710678, 0.25881905);
+  }
+
+  /// What the points of a slave face cover.
+  struct Coverage
+  {
+    double fraction = 0.; ///< of the face
+    double counted  = 1.; ///< mean part that points count with there
+  };
+
   /// Rule on the triangles of the overlaps.
   const dealii::Quadrature<2> &segment_rule(unsigned int degree);
 
   /// Integration points of slave face @p f on its overlaps with the master faces, seen along the slave normal: the
   /// faces (of degree 2: their four quarters) are projected on the plane of the slave one, clipped as convex polygons
   /// and triangulated (Puso & Laursen 2004). Polynomials of the product of slave and master shape functions are
-  /// integrated exactly where both faces are parallelograms. Returns the covered fraction of the face; @p points and @p
-  /// trace are overwritten.
-  double segment_points(const SurfaceGeometry    &slave,
-                        unsigned int              f,
-                        const SurfaceGeometry    &master,
-                        const MasterSearch       &search,
-                        double                    reach,
-                        std::vector<MortarPoint> &points,
-                        SegmentTrace             &trace);
+  /// integrated exactly where both faces are parallelograms. @p points and @p trace are overwritten.
+  Coverage segment_points(const SurfaceGeometry    &slave,
+                          unsigned int              f,
+                          const SurfaceGeometry    &master,
+                          const MasterSearch       &search,
+                          double                    reach,
+                          std::vector<MortarPoint> &points,
+                          SegmentTrace             &trace);
 } // namespace Nodus
 
 #endif

@@ -110,39 +110,39 @@ namespace Nodus
     for (unsigned int f = 0; f < faces_.size(); ++f)
       for (unsigned int n = 0; n < n_face_nodes; ++n)
       {
-        const Vector3     &unit              = unit_[f * n_face_nodes + n];
-        const Vector3      hung              = interpolated_direction(f, n);
-        const unsigned int node              = faces_[f].nodes[n];
-        nodal_normals_[f * n_face_nodes + n] = hung == Vector3() ? averaged_unit(node, unit) : hung / hung.norm();
+        const unsigned int own  = f * n_face_nodes + n;
+        const Vector3      hung = interpolated_direction(f, n);
+        nodal_normals_[own]     = hung == Vector3() ? averaged_unit(faces_[f].nodes[n], own) : hung / hung.norm();
       }
   }
 
   template <typename Function>
-  void SurfaceGeometry::for_faces(const unsigned int node, const Vector3 &unit, const Function &g) const
+  void SurfaceGeometry::for_faces(const unsigned int node, const unsigned int own, const Function &g) const // eq. P6
   {
-    const unsigned int n_face_nodes = node_shapes_.size();
     for (unsigned int i = start_[node]; i < start_[node + 1]; ++i)
-      if (unit_[occurrence_[i]] * unit > smooth_cosine)
-        g(faces_[occurrence_[i] / n_face_nodes], node_shapes_[occurrence_[i] % n_face_nodes]);
+      if (const Fading fading = belongs(unit_[occurrence_[i]], unit_[own]); fading.part > 0.)
+        g(occurrence_[i], fading);
   }
 
-  Vector3 SurfaceGeometry::sum_of_normals(const unsigned int node, const Vector3 &unit) const
+  Vector3 SurfaceGeometry::weighted_normal(const unsigned int at) const
+  {
+    const SurfaceFace &face = faces_[at / node_shapes_.size()];
+    const FaceGeometry geometry(face, node_shapes_[at % node_shapes_.size()], positions_);
+    return face.orientation / (geometry.d_xi.norm_square() * geometry.d_eta.norm_square()) * geometry.area_vector();
+  }
+
+  Vector3 SurfaceGeometry::sum_of_normals(const unsigned int node, const unsigned int own) const
   {
     Vector3 sum;
     for_faces(node,
-              unit,
-              [&](const SurfaceFace &face, const FaceShape &shape)
-              {
-                const FaceGeometry geometry(face, shape, positions_);
-                sum += face.orientation / (geometry.d_xi.norm_square() * geometry.d_eta.norm_square()) *
-                       geometry.area_vector();
-              });
+              own,
+              [&](const unsigned int other, const Fading &fading) { sum += fading.part * weighted_normal(other); });
     return sum;
   }
 
-  Vector3 SurfaceGeometry::averaged_unit(const unsigned int node, const Vector3 &unit) const
+  Vector3 SurfaceGeometry::averaged_unit(const unsigned int node, const unsigned int own) const
   {
-    Vector3 sum = sum_of_normals(node, unit);
+    Vector3 sum = sum_of_normals(node, own);
     if (sum == Vector3())
       return sum;
     sum /= sum.norm();
@@ -162,7 +162,7 @@ namespace Nodus
     Vector3           sum;
     for (unsigned int m = 0; hung && m < hung->masters.size(); ++m)
     {
-      const Vector3 normal = averaged_unit(hung->masters[m].first, unit_[f * node_shapes_.size() + n]);
+      const Vector3 normal = averaged_unit(hung->masters[m].first, f * node_shapes_.size() + n);
       if (normal == Vector3()) // beyond a sharp edge
         return normal;
       sum += hung->masters[m].second * normal;
@@ -186,20 +186,21 @@ namespace Nodus
                                                 const unsigned int           n,
                                                 std::vector<NodeDerivative> &derivative) const
   {
-    const Vector3 &unit = unit_[f * node_shapes_.size() + n], hung = interpolated_direction(f, n);
+    const unsigned int own  = f * node_shapes_.size() + n;
+    const Vector3      hung = interpolated_direction(f, n);
     if (hung == Vector3())
-      add_unit_derivative(faces_[f].nodes[n], unit, dealii::unit_symmetric_tensor<dim>(), derivative);
+      add_unit_derivative(faces_[f].nodes[n], own, dealii::unit_symmetric_tensor<dim>(), derivative);
     else
       for (const auto &[master, weight] : faces_[f].follower(n)->masters)
-        add_unit_derivative(master, unit, weight * unit_derivative(hung), derivative);
+        add_unit_derivative(master, own, weight * unit_derivative(hung), derivative);
   }
 
   void SurfaceGeometry::add_unit_derivative(const unsigned int            node,
-                                            const Vector3                &unit,
+                                            const unsigned int            own,
                                             const dealii::Tensor<2, dim> &factor,
                                             std::vector<NodeDerivative>  &derivative) const
   {
-    const Vector3          sum     = sum_of_normals(node, unit);
+    const Vector3          sum     = sum_of_normals(node, own);
     dealii::Tensor<2, dim> to_unit = unit_derivative(sum);
     if (on_symmetry_plane(node, sum / sum.norm()))
     {
@@ -212,21 +213,47 @@ namespace Nodus
           projector[c][c] = 1.;
       to_unit = unit_derivative(free) * projector;
     }
-    add_sum_derivative(node, unit, factor * to_unit, derivative);
+    add_sum_derivative(node, own, factor * to_unit, derivative);
+  }
+
+  void SurfaceGeometry::add_component_derivative(const unsigned int           at,
+                                                 const Vector3               &along,
+                                                 const Vector3               &direction,
+                                                 std::vector<NodeDerivative> &derivative) const
+  {
+    const SurfaceFace &face  = faces_[at / node_shapes_.size()];
+    const FaceShape   &shape = node_shapes_[at % node_shapes_.size()];
+    const FaceGeometry geometry(face, shape, positions_);
+    const Vector3      to_area = face.orientation * (unit_derivative(geometry.area_vector()) * along);
+    for (unsigned int m = 0; m < shape.n; ++m)
+      if (shape.d_xi[m] != 0. || shape.d_eta[m] != 0.)
+        add(derivative,
+            face.nodes[m],
+            dealii::outer_product(direction,
+                                  to_area * (shape.d_eta[m] * cross_matrix(geometry.d_xi) -
+                                             shape.d_xi[m] * cross_matrix(geometry.d_eta))));
   }
 
   void SurfaceGeometry::add_sum_derivative(const unsigned int            node,
-                                           const Vector3                &unit,
+                                           const unsigned int            own,
                                            const dealii::Tensor<2, dim> &factor,
                                            std::vector<NodeDerivative>  &derivative) const
   {
     for_faces(node,
-              unit,
-              [&](const SurfaceFace &face, const FaceShape &shape)
+              own,
+              [&](const unsigned int other, const Fading &fading)
               {
+                if (fading.slope > 0.)
+                {
+                  const Vector3 direction = fading.slope * (factor * weighted_normal(other));
+                  add_component_derivative(other, unit_[own], direction, derivative);
+                  add_component_derivative(own, unit_[other], direction, derivative);
+                }
+                const SurfaceFace &face  = faces_[other / node_shapes_.size()];
+                const FaceShape   &shape = node_shapes_[other % node_shapes_.size()];
                 const FaceGeometry geometry(face, shape, positions_);
                 const Vector3     &a = geometry.d_xi, &b = geometry.d_eta;
-                const double       scale  = face.orientation / (a.norm_square() * b.norm_square());
+                const double       scale  = fading.part * face.orientation / (a.norm_square() * b.norm_square());
                 const Vector3      normal = scale * geometry.area_vector();
                 const auto to_a = -scale * cross_matrix(b) - 2. / a.norm_square() * dealii::outer_product(normal, a);
                 const auto to_b = scale * cross_matrix(a) - 2. / b.norm_square() * dealii::outer_product(normal, b);

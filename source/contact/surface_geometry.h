@@ -23,6 +23,19 @@ namespace Nodus
   /// Derivative of v/|v|.
   dealii::Tensor<2, dim> unit_derivative(const Vector3 &v);
 
+  /// How much a face counts whose normal is at an angle to that of another one: in full up to the angle with the cosine
+  /// @p all, not at all from that with the cosine @p none on, with a smooth step between.
+  struct Fading
+  {
+    Fading(const double cosine, const double all, const double none)
+    {
+      const double t = std::clamp((cosine - none) / (all - none), 0., 1.);
+      part           = t * t * (3. - 2. * t);
+      slope          = 6. * t * (1. - t) / (all - none);
+    }
+    double part, slope; ///< slope: by the cosine
+  };
+
   /// Shape of the faces of one side at given positions, with normals averaged at the nodes.
   ///
   /// Faces of degree 1 may be smoothed: the middle of each edge moves onto the circular arc that meets the averaged
@@ -95,8 +108,8 @@ namespace Nodus
     Vector3 offset(unsigned int f, double xi, double eta) const;
 
     /// Averaged outward unit normal of node @p n of face @p f: of the faces at the node within 45 degrees of this one,
-    /// with weights that make it exact on spheres and cylinders (Max 1999). At a hanging node it is interpolated, as on
-    /// the larger face beside it.
+    /// and less and less of those within 60, with weights that make it exact on spheres and cylinders (Max 1999). At a
+    /// hanging node it is interpolated, as on the larger face beside it.
     const Vector3 &nodal_normal(const unsigned int f, const unsigned int n) const
     {
       return nodal_normals_[f * faces_[f].nodes.size() + n];
@@ -134,15 +147,12 @@ namespace Nodus
     void nodal_normal_derivative(unsigned int f, unsigned int n, std::vector<NodeDerivative> &derivative) const;
 
   private:
-    /// How much a face of the unit normal @p unit belongs to a surface that looks along @p normal: 1 within 45 degrees,
-    /// 0 from 60 degrees on.
-    static double belongs(const Vector3 &unit, const Vector3 &normal)
+    /// How much a face of the unit normal @p unit belongs to a smooth surface that looks along @p normal: 1 within 45
+    /// degrees, 0 from 60 degrees on, where there is an edge between them.
+    static Fading belongs(const Vector3 &unit, const Vector3 &normal)
     {
-      const double t = std::clamp((unit * normal - 0.5) / (smooth_cosine - 0.5), 0., 1.);
-      return t * t * (3. - 2. * t);
+      return Fading(unit * normal, 0.70710678, 0.5);
     }
-    /// Faces that meet at a larger angle (cosine below this) have an edge between them, not a smooth surface.
-    static constexpr double smooth_cosine = 0.70710678;
 
     const std::vector<SurfaceFace>           &faces_;
     const std::vector<Point>                 &positions_;
@@ -156,26 +166,33 @@ namespace Nodus
     std::vector<Vector3>      offsets_;     ///< of these, where the surface is smoothed
 
     void average_normals();
-    /// Calls g(face, shape there) for the faces around a surface node that belong to one smooth
-    /// surface with a face of normal @p unit.
+    /// Calls g(other, how much it belongs) for the faces around a surface node that belong to one smooth surface with
+    /// that of @p own. Both are faces at a node of theirs: indices into unit_.
     template <typename Function>
-    void for_faces(unsigned int node, const Vector3 &unit, const Function &g) const;
-    /// Sum of the weighted normals of these.
-    Vector3 sum_of_normals(unsigned int node, const Vector3 &unit) const;
+    void for_faces(unsigned int node, unsigned int own, const Function &g) const;
+    /// Normal of a face at a node of its own, with its weight.
+    Vector3 weighted_normal(unsigned int at) const;
+    /// Sum of those around a node.
+    Vector3 sum_of_normals(unsigned int node, unsigned int own) const;
     /// The unit vector of that, in the plane of symmetry where the node lies on one; zero when there are no such faces.
-    Vector3 averaged_unit(unsigned int node, const Vector3 &unit) const;
+    Vector3 averaged_unit(unsigned int node, unsigned int own) const;
     /// Of node n of face f where it hangs: interpolated from those of the nodes that it follows; zero for others, and
     /// beyond sharp edges.
     Vector3 interpolated_direction(unsigned int f, unsigned int n) const;
-    void    add_sum_derivative(unsigned int                  node,
-                               const Vector3                &unit,
-                               const dealii::Tensor<2, dim> &factor,
-                               std::vector<NodeDerivative>  &derivative) const;
-    void    add_unit_derivative(unsigned int                  node,
-                                const Vector3                &unit,
-                                const dealii::Tensor<2, dim> &factor,
-                                std::vector<NodeDerivative>  &derivative) const;
-    bool    on_symmetry_plane(unsigned int node, const Vector3 &normal) const;
+    /// Adds @p direction times the derivative of the component of unit_[at] along @p along.
+    void add_component_derivative(unsigned int                 at,
+                                  const Vector3               &along,
+                                  const Vector3               &direction,
+                                  std::vector<NodeDerivative> &derivative) const;
+    void add_sum_derivative(unsigned int                  node,
+                            unsigned int                  own,
+                            const dealii::Tensor<2, dim> &factor,
+                            std::vector<NodeDerivative>  &derivative) const;
+    void add_unit_derivative(unsigned int                  node,
+                             unsigned int                  own,
+                             const dealii::Tensor<2, dim> &factor,
+                             std::vector<NodeDerivative>  &derivative) const;
+    bool on_symmetry_plane(unsigned int node, const Vector3 &normal) const;
 
     void smooth();
     /// Of node n of face f where it hangs in the middle of an edge of a larger face, or nullptr.
@@ -201,7 +218,7 @@ namespace Nodus
     const unsigned int n_line = degree_ + 1, n_face = n_line * n_line;
     double             sum = 0.;
     for (unsigned int o = start_[node]; o < start_[node + 1]; ++o)
-      sum += belongs(unit_[occurrence_[o]], normal);
+      sum += belongs(unit_[occurrence_[o]], normal).part;
     if (sum < 0.1) // nothing looks that way
     {
       f(node, 1.);
@@ -213,7 +230,7 @@ namespace Nodus
       const unsigned int i = n % n_line, j = n / n_line;
       const unsigned int i_begin = i > 0 ? i - 1 : 0, i_end = std::min(i + 2, n_line);
       const unsigned int j_begin = j > 0 ? j - 1 : 0, j_end = std::min(j + 2, n_line);
-      const double       part = belongs(unit_[occurrence_[o]], normal) / (sum * (i_end - i_begin) * (j_end - j_begin));
+      const double part = belongs(unit_[occurrence_[o]], normal).part / (sum * (i_end - i_begin) * (j_end - j_begin));
       for (unsigned int l = j_begin; l < j_end; ++l)
         for (unsigned int k = i_begin; k < i_end; ++k)
           f(faces_[face].nodes[l * n_line + k], part);

@@ -50,7 +50,7 @@ namespace Nodus
 
   Vector3 SurfaceGeometry::end_normal(const unsigned int f, const unsigned int n, const unsigned int master) const
   {
-    const Vector3 normal = averaged_unit(master, unit_[4 * f + n]);
+    const Vector3 normal = averaged_unit(master, 4 * f + n);
     return normal == Vector3() ? unit_[4 * f + n] : normal;
   }
 
@@ -123,15 +123,14 @@ namespace Nodus
     const auto *const hung = on_larger_edge(f, n);
     if (!hung)
       return;
-    const Vector3     &unit = unit_[4 * f + n];
-    const unsigned int a = hung->masters[0].first, b = hung->masters[1].first;
+    const unsigned int own = 4 * f + n, a = hung->masters[0].first, b = hung->masters[1].first;
     const Arc          arc(positions_[b] - positions_[a], end_normal(f, n, a), end_normal(f, n, b));
     add(derivative, b, factor * arc.to_chord);
     add(derivative, a, -factor * arc.to_chord);
-    if (averaged_unit(a, unit) != Vector3())
-      add_unit_derivative(a, unit, factor * arc.to_normal_a, derivative);
-    if (averaged_unit(b, unit) != Vector3())
-      add_unit_derivative(b, unit, factor * arc.to_normal_b, derivative);
+    if (averaged_unit(a, own) != Vector3())
+      add_unit_derivative(a, own, factor * arc.to_normal_a, derivative);
+    if (averaged_unit(b, own) != Vector3())
+      add_unit_derivative(b, own, factor * arc.to_normal_b, derivative);
   }
 
   std::vector<NodeDerivative> SurfaceGeometry::offset_derivative(const unsigned int f, const unsigned int part) const

@@ -248,7 +248,7 @@ namespace Nodus
           pair.surface,
           surface_names,
           "Faces of degree 1, and triangles of an STL file, as they are, or rounded to meet the averaged normals "
-          "of the nodes [-]; edges sharper than 45 degrees stay.");
+          "of the nodes [-]; edges fade in from 45 degrees on and stay from 60 (of triangles: 45) degrees on.");
       add_choice(prm,
                  "Normal",
                  pair.normal,

@@ -1,9 +1,9 @@
 // The contact tangent with the variation of the geometry against central differences of the contact residual with
 // pairing renewed at every step, on bumpy surfaces that do not match: nodal forces kept (multipliers follow the areas),
 // friction multipliers turned with the frames, all as the solver does; also on rigid masters. Frictionless, sticking,
-// slipping and tied; slave faces that stick out of the master; bodies that have turned by 70 degrees in the increment.
-// Exact but for how smoothing shifts points along averaged surfaces, and for the areas of the nodal scheme with
-// friction (geometry_tangent.h).
+// slipping and tied; slave faces that stick out of the master, and that see a part of it that is steep; bodies that
+// have turned by 70 degrees in the increment. Exact but for how smoothing shifts points along averaged surfaces, and
+// for the areas of the nodal scheme with friction (geometry_tangent.h).
 
 #include "contact/geometry_tangent.h"
 #include "contact/site_values.h"
@@ -48,6 +48,7 @@ namespace
     unsigned int      degree      = 1;
     bool              orthotropic = false;
     bool              gives_way   = false; ///< a pressure-gap law and elastic slip
+    double            bend        = 0.;    ///< of the master, down along x = 0.2, in degrees
   };
 
   /// A fixture whose multipliers keep what the solver keeps when it pairs again.
@@ -209,6 +210,14 @@ namespace
     Stl::write_ascii(stl_file, triangles);
   }
 
+  bool is_slave(const ContactFixture &fixture, const unsigned int node)
+  {
+    for (const SlaveNode &k : fixture.surfaces->slave_nodes())
+      if (k.node == node)
+        return true;
+    return false;
+  }
+
   /// Bumpy surfaces that touch, and multipliers and statuses at random.
   void disturb(const Kind &kind, ContactFixture &fixture)
   {
@@ -216,10 +225,17 @@ namespace
     std::mt19937                           generator(1);
     std::uniform_real_distribution<double> random(-1., 1.);
     const double                           size = 0.01 / kind.degree;
+    if (kind.bend != 0.)
+    {
+      const double angle = kind.bend * dealii::numbers::PI / 180.;
+      for (unsigned int i = 0; i < state.x.size(); ++i)
+        if (const double beyond = 0.2 - state.x[i][0]; beyond > 1e-6 && !is_slave(fixture, i))
+          state.x[i] += Vector3({(1. - std::cos(angle)) * beyond, 0., -std::sin(angle) * beyond});
+    }
     for (auto &x : state.x)
       x += Vector3(
           {size * random(generator), size * random(generator), 0.1 * x[0] * x[1] + 0.5 * size * random(generator)});
-    for (unsigned int iteration = 0; iteration < 20; ++iteration) // slave nodes onto the master
+    for (unsigned int iteration = 0; iteration < 20 && kind.bend == 0.; ++iteration) // slave nodes onto the master
     {
       Kept::follow(fixture);
       fixture.pair_at(state.x);
@@ -446,6 +462,16 @@ namespace
           k.degree   = 2;
           k.friction = Friction::stick;
         });
+    // faces that fade out of normals (eq. P1) and averages (eq. J8)
+    for (const Kind &base : {Kind{"nodal, smoothed", nodal, smoothed}, plain})
+      for (const double bend : {52., 68.})
+        add(base,
+            ", bent by " + std::to_string(static_cast<int>(bend)) + " degrees",
+            [bend](Kind &k)
+            {
+              k.bend     = bend;
+              k.friction = k.scheme == Pair::Scheme::averaged ? Friction::stick : Friction::none;
+            });
     add({"averaged, rigid paraboloid", averaged, faceted},
         ", stick",
         [](Kind &k)

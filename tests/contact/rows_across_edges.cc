@@ -1,11 +1,15 @@
 // Rows of the jump operator where a slave node passes over an edge between two faces of a curved master, on smoothed
 // surfaces and with friction: the weights that balance moments do not jump there (eq. J4, J5 with the shares J6), nor
 // does the normal, of facets either (eq. P5). Averages of a fixed rule whose points go over the rim of the master,
-// which do not jump either (eq. J7).
+// which do not jump either (eq. J7). A part of the master that bends down along an edge, until that is sharp and the
+// part too steep for averages over segments: neither normals and offsets of smoothed surfaces (eq. P1) nor averages
+// (eq. J8) jump. A slave face that is all opposite a steep face keeps the dual functions.
 
 #include "../contact_fixture.h"
 
+#include <cmath>
 #include <map>
+#include <memory>
 
 using namespace Cases;
 
@@ -130,6 +134,80 @@ namespace
     report(name + ": least covered part around the first node", Numbers::number(least, 2));
     report(name + ": largest change of weights and covered part in a step", Numbers::error_below(change, 5e-3, 2));
   }
+
+  /// The master that is bent by an angle along its middle, x = 0, and the slave above that.
+  class BentMaster
+  {
+  public:
+    BentMaster(const Pair::Scheme scheme, const Pair::Surface surface, const double begin, const double end)
+        : pair_(pair(region(2, {z_minus}), region(1, {z_plus})))
+    {
+      pair_.scheme  = scheme;
+      pair_.surface = surface;
+      fixture_      = std::make_unique<ContactFixture>(
+          std::vector<BodyParameters>{box("lower", "4,1,1", {-1, -0.5, -1}, {1, 0.5, 0}, 1, 0),
+                                           box("upper", "1,1,1", {begin, -0.3, 0.02}, {end, 0.3, 1}, 1, 0)},
+          std::vector<Pair>{pair_},
+          1);
+      start_ = fixture_->state.x;
+    }
+    ContactFixture &at(const double degrees)
+    {
+      const double angle = degrees * dealii::numbers::PI / 180.;
+      auto        &x     = fixture_->state.x;
+      for (unsigned int i = 0; i < x.size(); ++i)
+        if (start_[i][2] < 0.01 && start_[i][0] < 0.)
+          x[i] = Point(std::cos(angle) * start_[i][0], start_[i][1], std::sin(angle) * start_[i][0]);
+      fixture_->pair_at(x);
+      return *fixture_;
+    }
+
+  private:
+    Pair                            pair_;
+    std::unique_ptr<ContactFixture> fixture_;
+    std::vector<Point>              start_;
+  };
+
+  /// From 30 to 88 degrees in steps of 0.01. Between 45 and 75 degrees, where faces fade out, a weight may go from 1
+  /// to 0: by some 1e-3 a step.
+  void bend(const std::string &name, const Pair::Scheme scheme, const Pair::Surface surface)
+  {
+    BentMaster                                    master(scheme, surface, -0.1, 0.5);
+    std::map<unsigned int, std::array<double, 4>> before;
+    double                                        change = 0.;
+    for (unsigned int step = 0; step <= 5800; ++step)
+    {
+      ContactFixture &fixture = master.at(30. + 0.01 * step);
+      auto            after   = row(fixture, 0);
+      const Vector3   gap = fixture.jump.jump(0, fixture.state.x), normal = fixture.pairing[0].normal;
+      after[-1u] = {{fixture.weights.area()[0], gap[0], gap[1], gap[2]}};
+      after[-2u] = {{0., normal[0], normal[1], normal[2]}};
+      for (const auto &[node, values] : after)
+        for (unsigned int i = 0; i < 4 && step > 0; ++i)
+          change = std::max(change, std::abs(values[i] - (before.count(node) > 0 ? before[node][i] : 0.)));
+      before = std::move(after);
+    }
+    report(name + ": largest change of weights, gap, normal and area in a step", Numbers::error_below(change, 5e-3, 2));
+  }
+
+  /// The mean distance of a face that is all opposite the bent part is that of the node, however little it counts:
+  /// dual functions give the value of a linear function at the node.
+  void opposite()
+  {
+    double error = 0.;
+    for (const double degrees : {30., 50., 60., 70.})
+    {
+      BentMaster      master(Pair::Scheme::averaged, Pair::Surface::faceted, -0.15, -0.02);
+      ContactFixture &fixture  = master.at(degrees);
+      const double    angle    = degrees * dealii::numbers::PI / 180.;
+      const Point     x        = fixture.state.x[fixture.surfaces->slave_nodes()[0].node];
+      const double    distance = std::cos(angle) * x[2] - std::sin(angle) * x[0];
+      error =
+          std::max(error, std::abs(-fixture.pairing[0].normal * fixture.jump.jump(0, fixture.state.x) / distance - 1.));
+    }
+    report("a face all opposite a bent part of 30 to 70 degrees: distance of a node against that of its position",
+           Numbers::error_below(error, 1e-6, 2));
+  }
 } // namespace
 
 int main(int argc, char **argv)
@@ -144,4 +222,8 @@ int main(int argc, char **argv)
   pass("degree 2, normals of facets", 2, false, Normal::master_facet);
   leave("degree 1, points that leave the master", 1);
   leave("degree 2, points that leave the master", 2);
+  bend("nodal, smoothed, an edge that becomes sharp", Pair::Scheme::nodal, Pair::Surface::smoothed);
+  bend("averaged, facets, a face that becomes steep", Pair::Scheme::averaged, Pair::Surface::faceted);
+  bend("averaged, smoothed, both", Pair::Scheme::averaged, Pair::Surface::smoothed);
+  opposite();
 }
