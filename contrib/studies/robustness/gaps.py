@@ -11,6 +11,7 @@ import geometry
 from geometry import shape
 
 TOLERANCE = 0.05  # Projection tolerance by default [face sizes]; sites that were closed keep their partner up to twice that
+SPREAD = 1e-5, 1e-6  # of master nodes that balance moments [areas around a node] (section 7)
 
 
 class Rows:
@@ -181,11 +182,11 @@ class Pair:
         counts = np.where(m >= 0, np.maximum(0, 1 - 2 * over / TOLERANCE), 0)
         coverage = np.bincount(f, w * counts, len(self.faces))  # in local coordinates
         keep = counts > 0
-        return [v[keep] for v in (f, s, t, w * counts, m, a, b)] + [coverage]
+        return [v[keep] for v in (f, s, t, w * counts, m, a, b)] + [coverage, np.ones_like(coverage)]
 
     def _averaged(self, rows, points, found, over, choices, preferred):
         """(J1) to (J4). Nodes that have a closest point themselves take the normal there: one of choices (site, normal)."""
-        f, s, t, w, m, a, b, coverage = points
+        f, s, t, w, m, a, b, coverage, counted = points
         phi, hat, theirs = shape(self.degree, s, t)[0], geometry.hats(self.degree, s, t), shape(self.degree, a, b)[0]
         n_faces = len(self.faces)
         w = w * self.slave.element(f, s, t)
@@ -205,7 +206,7 @@ class Pair:
             area = weight * self.slave.element(np.arange(n_faces), u, v)[:, None]
             exact += area * shape(self.degree, u, v)[0]
             full += area * geometry.hats(self.degree, u, v)
-        scale = 1 + dual_part[:, None] * (exact / np.where(sums == 0, 1, sums) - 1)
+        scale = 1 + dual_part[:, None] * (counted[:, None] * exact / np.where(sums == 0, 1, sums) - 1)
         psi *= scale[f]
         whole = np.zeros(len(self.nodes))
         np.add.at(whole, self.faces, dual_part[:, None] * exact + (1 - dual_part[:, None]) * full)
@@ -258,8 +259,7 @@ class Pair:
         m, shares = self.master, collections.defaultdict(float)
         for node, weight in zip(nodes, np.abs(weights)):
             faces, places = np.where(m.faces == node)
-            step = np.clip((-m.unit[faces, places] @ normal - 0.5) / (np.sqrt(0.5) - 0.5), 0, 1)
-            belongs = step**2 * (3 - 2 * step)
+            belongs = geometry.fading(-m.unit[faces, places] @ normal, geometry.SMOOTH, geometry.SHARP)
             if belongs.sum() < 0.1:
                 shares[node] += weight
                 continue
@@ -274,7 +274,7 @@ class Pair:
         """Those of the nodes, and (J6) as far as these are in one place or line."""
         y = (self.bodies.x[nodes] - weights @ self.bodies.x[nodes] / weights.sum()) @ (np.eye(3) - np.outer(normal, normal))
         smaller = np.linalg.eigvalsh(np.einsum("e,ei,ej->ij", weights, y, y))[1]  # 0 along the normal
-        part = 1 - counted_part(smaller / area)
+        part = 1 - geometry.fading(smaller / area, *SPREAD)
         if part == 0:
             return nodes, weights
         around, shares = self._shares_around(nodes, weights, normal)
@@ -294,18 +294,12 @@ class Pair:
         v *= min(1.0, limit / max(length, 1e-300))
         y = (x[masters] - share @ x[masters] / share.sum()) @ across
         values, axes = np.linalg.eigh(np.einsum("e,ei,ej->ij", share, y, y))
-        part = counted_part(values / size**2)
+        part = geometry.fading(values / size**2, *SPREAD)
         factor = np.where(part > 0, part / np.where(part > 0, values, 1), 0)
         slope = share[:, None] * (y @ ((axes * factor) @ axes.T))
         g[masters] -= slope @ v
         if self.friction:
             rows.turn[k, masters] = np.clip(n @ (g @ x), -limit, limit) * slope
-
-
-def counted_part(spread):
-    """The smooth step of section 7 from 1e-6 to 1e-5."""
-    t = np.clip((spread - 1e-6) / 9e-6, 0, 1)
-    return t**2 * (3 - 2 * t)
 
 
 def choose(normals, preferred, sites, choices):
@@ -332,14 +326,15 @@ class Segments:
         self.axes = np.stack([e1, np.cross(normal, e1)], 1)  # (cells, 2, 3)
         flat = np.einsum("sac,skc->ska", self.axes, sc - sc[:, :1])
         shadow = np.einsum("sac,smkc->smka", self.axes, mc[None] - sc[:, None, :1])
-        near = (theirs @ normal.T).T < -geometry.FACING
+        self.part = geometry.fading(-(theirs @ normal.T).T, geometry.FACING, geometry.FLANK)
+        near = self.part > 0
         for c in range(2):
             near &= (shadow[..., c].max(2) > flat[..., c].min(1)[:, None]) & (shadow[..., c].min(2) < flat[..., c].max(1)[:, None])
         self.polygons = [(s, m, clip(flat[s], shadow[s, m][::-1])) for s, m in zip(*np.where(near))]
 
     def points(self, first, fine=False):
         """Points on triangles around corner `first` of each overlap: f, xi, eta, w (without element of area), master face, xi', eta';
-        and the covered fraction of each slave face."""
+        the covered fraction of each slave face, and the mean part that its points count with."""
         slave, master, p = self.slave, self.master, self.slave.degree
         rule, weight = geometry.triangle_rule(p, fine)
         cell, other, at, area = [], [], [], []
@@ -358,8 +353,11 @@ class Segments:
         a, b, _, good = invert(straight, master.shape_points[m], master.shape_degree, axes, origin, self.mu[other])
         good &= np.linalg.norm(master.at(m, a, b)[0] - x, axis=1) <= self.reach
         whole = 0.5 * np.linalg.norm(self.diagonal, axis=1)
-        coverage = np.bincount(f, area * good, len(slave.faces)) / np.bincount(self.sf, whole, len(slave.faces))
-        return [v[good] for v in (f, xi, eta, area / det, m, a, b)] + [coverage]
+        part = self.part[cell, other]
+        once, twice = (np.bincount(f, area * good * p, len(slave.faces)) for p in (part, part**2))
+        counted = np.divide(twice, once, out=np.ones_like(once), where=once > 0)
+        coverage = once / np.bincount(self.sf, whole, len(slave.faces)) / counted
+        return [v[good] for v in (f, xi, eta, part * area / det, m, a, b)] + [coverage, counted]
 
 
 def quarters(surface):

@@ -8,9 +8,9 @@ Not handled: hanging nodes, planes of symmetry through contact edges, rigid mast
 import numpy as np
 
 SINGLE = 6e-8  # files hold single precision, relative
-SHARP = 0.70710678  # faces that meet at more than 45 degrees have no common normal
+SMOOTH, SHARP = 0.70710678, 0.5  # faces that meet at less than 45 degrees have a common normal, at more than 60 none
 FAR_SIDE = 0.5  # a face that looks along the slave normal is the far side of a body
-FACING = 0.5
+FACING, FLANK = 0.70710678, 0.25881905  # master faces count in full within 45 degrees, from 75 on not at all
 # Symmetric rules on triangles (Dunavant 1985), degrees 4 and 8: weight and barycentric a of (a, a, 1 - 2a); all their weights
 # add up to 1.
 _RULES = {1: ([(0.223381589678011, 0.445948490915965), (0.109951743655322, 0.091576213509771)], None, None),
@@ -109,6 +109,12 @@ class Bodies:
         return own[distance.argmin(axis=1)], distance.min(axis=1, initial=np.inf)
 
 
+def fading(cosine, all_, none):
+    """(P6), (J8): 1 from the cosine all_ on, 0 below none, a smooth step between."""
+    t = np.clip((cosine - none) / (all_ - none), 0, 1)
+    return t**2 * (3 - 2 * t)
+
+
 class Surface:
     """A set of faces of Bodies, `smoothed` (P2) or not. Positions of points come from the smoothed faces, areas and
     displacements from those of the nodes."""
@@ -147,7 +153,7 @@ class Surface:
         normal = np.empty_like(unit)
         for a, b in zip(starts[:-1], starts[1:]):
             i = order[a:b]
-            normal[i] = (unit[i] @ unit[i].T > SHARP) @ weighted[i]
+            normal[i] = fading(unit[i] @ unit[i].T, SMOOTH, SHARP) @ weighted[i]
         self.nodal_normal = (normal / np.linalg.norm(normal, axis=1)[:, None]).reshape(self.unit.shape)
 
     def _bulge(self, corners):
