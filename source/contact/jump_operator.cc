@@ -8,30 +8,14 @@
 
 namespace Nodus
 {
-  namespace
-  {
-    /// How far the spread is from where nothing to where all of it counts.
-    double way_to_full_spread(const double spread, const double size)
-    {
-      using namespace MomentBalance;
-      return std::clamp((spread / (size * size) - no_spread) / (full_spread - no_spread), 0., 1.);
-    }
-  } // namespace
-
-  double MomentBalance::counted_part(const double spread, const double size)
-  {
-    const double t = way_to_full_spread(spread, size);
-    return t * t * (3. - 2. * t);
-  }
-
   std::pair<double, double> MomentBalance::inverse_of_spread(const double spread, const double size)
   {
-    const double part = counted_part(spread, size);
-    if (part == 0.)
+    const double part = spread / (size * size);
+    if (!(part > no_spread))
       return {0., 0.};
-    const double t      = way_to_full_spread(spread, size);
+    const double t      = std::min(1., (part - no_spread) / (full_spread - no_spread));
     const double growth = 6. * t * (1. - t) / ((full_spread - no_spread) * size * size);
-    const double value  = part / spread;
+    const double value  = t * t * (3. - 2. * t) / spread;
     return {value, (growth - value) / spread};
   }
 
@@ -48,6 +32,9 @@ namespace Nodus
   namespace
   {
     using namespace MomentBalance;
+    /// Mean square distances of master nodes, over the square of the size, up to which those around them share in full
+    /// with averages over segments, and from which on not at all: wide apart, for the tangent has no change of it.
+    constexpr double near_nodes = 1e-4, far_nodes = 1e-2;
     /// Shorter levers are round-off, of sizes of the surface around the slave node.
     constexpr double smallest_lever = 1e-13;
 
@@ -161,7 +148,7 @@ namespace Nodus
     };
 
     /// How the nodes of a row share. Averages over segments are of one node alone where that lies on the slave node:
-    /// those around it take part where its own have no spread.
+    /// those around it take part where its own are near each other.
     Shares share(const ContactPairParameters &pair,
                  const ContactGeometry       &geometry,
                  const unsigned int           p,
@@ -181,7 +168,7 @@ namespace Nodus
       if (shares.weighted > 0.)
       {
         const Spread spread(row.master, MomentBalance::basis(site), geometry.slave[p].positions());
-        shares.around -= counted_part(spread.axes.eigenvalues()[0], row.size);
+        shares.around -= Fading(spread.axes.eigenvalues()[0] / (row.size * row.size), far_nodes, near_nodes).part;
       }
       if (shares.around > 0.)
         row.share_around(geometry.master[p], site.normal, shares.around);

@@ -17,11 +17,9 @@ namespace Nodus
   {
     /// Largest shift of a master point, in sizes of the surface: of sites far from contact.
     constexpr double largest_shift = 0.5;
-    /// Mean square distance of the master nodes, over the square of that size, at which their point is not moved, or
-    /// those around take part in full, as they are in a line; and from which on they move it by themselves.
+    /// Mean square distance of the master nodes, over the square of that size, at which their point is not moved, as
+    /// they are in a line, and from which on it is in full.
     constexpr double no_spread = 1e-6, full_spread = 1e-5;
-    /// The part of 1 that a spread of 10^-6 (0) to 10^-5 (1) sizes squared counts with.
-    double counted_part(double spread, double size);
     /// 1 / @p spread [1/area], or less where that is little, and its derivative. @p size: of the surface [length].
     std::pair<double, double> inverse_of_spread(double spread, double size);
     /// Unit vectors across the normal of a site and each other. The first tangents that carry friction are these.

@@ -11,7 +11,9 @@ import geometry
 from geometry import shape
 
 TOLERANCE = 0.05  # Projection tolerance by default [face sizes]; sites that were closed keep their partner up to twice that
-SPREAD = 1e-5, 1e-6  # of master nodes that balance moments [areas around a node] (section 7)
+# Spreads of master nodes that balance moments [areas around a node], as of geometry.fading (section 7): when their own count, and
+# when those around them do not share.
+SPREAD, APART = (1e-5, 1e-6), (1e-2, 1e-4)
 
 
 class Rows:
@@ -274,7 +276,7 @@ class Pair:
         """Those of the nodes, and (J6) as far as these are in one place or line."""
         y = (self.bodies.x[nodes] - weights @ self.bodies.x[nodes] / weights.sum()) @ (np.eye(3) - np.outer(normal, normal))
         smaller = np.linalg.eigvalsh(np.einsum("e,ei,ej->ij", weights, y, y))[1]  # 0 along the normal
-        part = 1 - geometry.fading(smaller / area, *SPREAD)
+        part = 1 - geometry.fading(smaller / area, *APART)
         if part == 0:
             return nodes, weights
         around, shares = self._shares_around(nodes, weights, normal)
