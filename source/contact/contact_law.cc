@@ -51,7 +51,7 @@ namespace Nodus
       double  blocked_tangent[2]; ///< phi^2 where nothing can slip along tangent i: Lambda_i is zero by itself
       Rows23  tangent;            ///< rows: free tangents, zero where blocked
       Column3 axis[2];            ///< both tangents
-      double  Lambda[2];
+      double  Lambda[2];          ///< components along both
     };
 
     struct Jump : Filtered

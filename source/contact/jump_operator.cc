@@ -13,10 +13,9 @@ namespace Nodus
     const double part = spread / (size * size);
     if (!(part > no_spread))
       return {0., 0.};
-    const double t      = std::min(1., (part - no_spread) / (full_spread - no_spread));
-    const double growth = 6. * t * (1. - t) / ((full_spread - no_spread) * size * size);
-    const double value  = t * t * (3. - 2. * t) / spread;
-    return {value, (growth - value) / spread};
+    const Fading counts(part, full_spread, no_spread);
+    const double value = counts.part / spread;
+    return {value, (counts.slope / (size * size) - value) / spread};
   }
 
   std::array<Vector3, 2> MomentBalance::basis(const SitePairing &site)

@@ -23,17 +23,17 @@ namespace Nodus
   /// Derivative of v/|v|.
   dealii::Tensor<2, dim> unit_derivative(const Vector3 &v);
 
-  /// How much a face counts whose normal is at an angle to that of another one: in full up to the angle with the cosine
-  /// @p all, not at all from that with the cosine @p none on, with a smooth step between.
+  /// How much something counts that has a measure, as a face that of the cosine between its normal and another one: in
+  /// full from @p all on, not at all below @p none, with a smooth step between.
   struct Fading
   {
-    Fading(const double cosine, const double all, const double none)
+    Fading(const double measure, const double all, const double none)
     {
-      const double t = std::clamp((cosine - none) / (all - none), 0., 1.);
+      const double t = std::clamp((measure - none) / (all - none), 0., 1.);
       part           = t * t * (3. - 2. * t);
       slope          = 6. * t * (1. - t) / (all - none);
     }
-    double part, slope; ///< slope: by the cosine
+    double part, slope; ///< slope: by the measure
   };
 
   /// Shape of the faces of one side at given positions, with normals averaged at the nodes.

@@ -3,7 +3,8 @@
 // does the normal, of facets either (eq. P5). Averages of a fixed rule whose points go over the rim of the master,
 // which do not jump either (eq. J7). A part of the master that bends down along an edge, until that is sharp and the
 // part too steep for averages over segments: neither normals and offsets of smoothed surfaces (eq. P1) nor averages
-// (eq. J8) jump. A slave face that is all opposite a steep face keeps the dual functions.
+// (eq. J8) jump. A slave face that is all opposite a steep face keeps the dual functions. Averages over segments whose
+// slave node lies over a master node, where they have no other master node: moments balance there, too (eq. J6).
 
 #include "../contact_fixture.h"
 
@@ -208,6 +209,42 @@ namespace
     report("a face all opposite a bent part of 30 to 70 degrees: distance of a node against that of its position",
            Numbers::error_below(error, 1e-6, 2));
   }
+
+  /// A fine slave above a curved master, both with a node at (0.5, 0.5).
+  void over_a_node()
+  {
+    Pair p                 = pair(region(2, {z_minus}), region(1, {z_plus}));
+    p.scheme               = Pair::Scheme::averaged;
+    p.surface              = Pair::Surface::smoothed;
+    p.normal               = Pair::Normal::averaged;
+    p.friction_coefficient = 0.3;
+    ContactFixture fixture({box("lower", "4,4,1", {-1, -1, -1}, {1, 1, 0}, 1, 0),
+                            box("upper", "6,6,1", {0.1, 0.1, 0}, {0.9, 0.9, 1}, 1, 0)},
+                           {p},
+                           1);
+    auto          &x = fixture.state.x;
+    for (auto &point : x) // nearly flat: with more curvature the other master nodes weigh enough
+      if (point[2] > -0.5)
+        point[2] -= 1.5e-3 * point[0] * point[0] + 1e-3 * point[1] * point[1] + 4e-4 * point[0] * point[1];
+    fixture.pair_at(x);
+    unsigned int fewest = -1u;
+    double       beside = 0.;
+    for (unsigned int k = 0; k < fixture.surfaces->slave_nodes().size(); ++k)
+    {
+      Vector3      apart;
+      unsigned int heavy = 0;
+      for (auto e = fixture.jump.begin(k); e != fixture.jump.end(k); ++e)
+      {
+        apart += e->weight * x[e->node];
+        heavy += e >= fixture.jump.middle(k) && std::abs(e->unbalanced) > 1e-3;
+      }
+      const Vector3 &n = fixture.jump.normal(k);
+      fewest           = std::min(fewest, heavy);
+      beside           = std::max(beside, (apart - (apart * n) * n).norm() / fixture.jump.size(k));
+    }
+    check_equal("over a node: fewest master nodes of an average", fewest, 1);
+    report("over a node: how far the master point is beside the normal", Numbers::error_below(beside, 1e-12, 2));
+  }
 } // namespace
 
 int main(int argc, char **argv)
@@ -226,4 +263,5 @@ int main(int argc, char **argv)
   bend("averaged, facets, a face that becomes steep", Pair::Scheme::averaged, Pair::Surface::faceted);
   bend("averaged, smoothed, both", Pair::Scheme::averaged, Pair::Surface::smoothed);
   opposite();
+  over_a_node();
 }
