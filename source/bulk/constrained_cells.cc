@@ -1,5 +1,6 @@
 #include "bulk/constrained_cells.h"
 #include "base/deal_ii_versions.h"
+#include "parallel/all_gather.h"
 #include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
@@ -97,7 +98,7 @@ namespace Nodus
     n_owned_                   = base->n_owned();
     const unsigned int    rank = dealii::Utilities::MPI::this_mpi_process(communicator_);
     std::vector<DoFIndex> end_of_rank;
-    for (const DoFIndex n : dealii::Utilities::MPI::all_gather(communicator_, DoFIndex(n_owned_)))
+    for (const DoFIndex n : all_gather(communicator_, DoFIndex(n_owned_)))
       end_of_rank.push_back(n + (end_of_rank.empty() ? 0 : end_of_rank.back()));
     const auto owner = [&](const DoFIndex node) -> unsigned int
     { return std::upper_bound(end_of_rank.begin(), end_of_rank.end(), node) - end_of_rank.begin(); };

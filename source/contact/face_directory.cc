@@ -1,6 +1,7 @@
 #include "contact/face_directory.h"
 #include "base/deal_ii_versions.h"
 #include "mesh/region.h"
+#include "parallel/all_gather.h"
 #include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
@@ -27,7 +28,7 @@ namespace Nodus
       , size_(2 * n_pairs, 0)
   {
     const DoFIndex n_owned = dof_handler.locally_owned_dofs().n_elements();
-    for (const DoFIndex n : dealii::Utilities::MPI::all_gather(communicator_of(dof_handler), n_owned))
+    for (const DoFIndex n : all_gather(communicator_of(dof_handler), n_owned))
       end_of_rank_.push_back(n + (end_of_rank_.empty() ? 0 : end_of_rank_.back()));
   }
 
@@ -149,7 +150,7 @@ namespace Nodus
     std::vector<unsigned int> counts;
     for (const auto &faces : own_)
       counts.push_back(faces.size());
-    const auto all = dealii::Utilities::MPI::all_gather(communicator, counts);
+    const auto all = all_gather(communicator, counts);
     for (unsigned int i = 0; i < own_.size(); ++i)
     {
       unsigned int first = 0;

@@ -1,6 +1,7 @@
 #include "contact/intrusion.h"
 #include "contact/master_request.h"
 #include "contact/other_side.h"
+#include "parallel/all_gather.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -160,11 +161,10 @@ namespace Nodus
         const auto take = [](const std::array<double, dim + 1> &n) {
           return Intrusion::Node{Point(n[0], n[1], n[2]), n[dim] == 0. ? slave_side : master_side};
         };
-        const auto all = dealii::Utilities::MPI::all_gather(
-            communicator_,
-            std::make_pair(std::make_pair(found_.depth, node(found_.deepest)),
-                           std::make_pair(found_.passed, node(found_.first_passed))));
-        Intrusion result;
+        const auto all = all_gather(communicator_,
+                                    std::make_pair(std::make_pair(found_.depth, node(found_.deepest)),
+                                                   std::make_pair(found_.passed, node(found_.first_passed))));
+        Intrusion  result;
         for (const auto &[deepest, passed] : all)
         {
           if (deepest.first > result.depth)

@@ -1,6 +1,7 @@
 #include "contact/loci.h"
 #include "contact/surface.h"
 #include "mesh/sides.h"
+#include "parallel/all_gather.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -49,7 +50,7 @@ namespace Nodus
                              (name.empty() ? "" : " ('" + name + "')"));
     }
     std::vector<std::pair<DoFIndex, std::string>> all;
-    for (const auto &part : dealii::Utilities::MPI::all_gather(surfaces.layout().communicator, first))
+    for (const auto &part : all_gather(surfaces.layout().communicator, first))
       all.insert(all.end(), part.begin(), part.end());
     std::sort(all.begin(), all.end());
     std::vector<std::string> found;

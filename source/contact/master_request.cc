@@ -1,4 +1,5 @@
 #include "contact/master_request.h"
+#include "parallel/all_gather.h"
 #include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
@@ -200,7 +201,7 @@ namespace Nodus
           for (unsigned int c = 0; c < dim; ++c)
             boxes.push_back(all.upper_bound(c));
         }
-        of_rank_ = dealii::Utilities::MPI::all_gather(communicator, boxes);
+        of_rank_ = all_gather(communicator, boxes);
       }
 
       unsigned int n_ranks() const

@@ -1,4 +1,5 @@
 #include "contact/other_side.h"
+#include "parallel/all_gather.h"
 #include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
@@ -94,7 +95,7 @@ namespace Nodus
       corners[c]       = all.lower_bound(c);
       corners[dim + c] = all.upper_bound(c);
     }
-    of_rank_ = dealii::Utilities::MPI::all_gather(communicator, std::make_pair(own.nodes().empty() ? 0u : 1u, corners));
+    of_rank_ = all_gather(communicator, std::make_pair(own.nodes().empty() ? 0u : 1u, corners));
   }
 
   NodeQuestion OtherSide::question(const Point &before, const Point &now, const double depth) const

@@ -1,5 +1,6 @@
 #include "contact/face_rule.h"
 #include "contact/surface.h"
+#include "parallel/all_gather.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -141,7 +142,7 @@ namespace Nodus
 
   void ContactSurfaces::make_layout(const dealii::IndexSet &owned_dofs)
   {
-    const auto counts = dealii::Utilities::MPI::all_gather(communicator_, sites_.n_owned_nodes);
+    const auto counts = all_gather(communicator_, sites_.n_owned_nodes);
     DoFIndex   first = 0, n = 0;
     for (unsigned int r = 0; r < counts.size(); ++r)
     {

@@ -1,4 +1,5 @@
 #include "contact/tractions.h"
+#include "parallel/all_gather.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -263,7 +264,7 @@ namespace Nodus
     std::vector<ContactFields> whole;
     for (const ContactFields &part : parts)
     {
-      const auto all = dealii::Utilities::MPI::all_gather(communicator, part);
+      const auto all = all_gather(communicator, part);
       // nodes on several ranks are the same there: the first one counts
       std::map<DoFIndex, std::pair<unsigned int, unsigned int>> nodes; // by number: rank and place
       for (unsigned int r = 0; r < all.size(); ++r)

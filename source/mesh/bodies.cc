@@ -2,6 +2,7 @@
 #include "base/deal_ii_versions.h"
 #include "mesh/memory.h"
 #include "mesh/mesh_share.h"
+#include "parallel/all_gather.h"
 #include "parallel/throw_everywhere.h"
 #include "parallel/wait_for_all.h"
 #include "parameters/expression.h"
@@ -226,7 +227,7 @@ namespace Nodus
     for (const auto &[body, id] : ids)
       own.insert(own.end(), {body, id});
     boundary_ids_.resize(size());
-    for (const auto &part : dealii::Utilities::MPI::all_gather(communicator_of(*triangulation_), own))
+    for (const auto &part : all_gather(communicator_of(*triangulation_), own))
       for (unsigned int i = 0; i < part.size(); i += 2)
         boundary_ids_[part[i]].insert(part[i + 1]);
 

@@ -1,5 +1,6 @@
 #include "mesh/hanging_nodes.h"
 #include "base/deal_ii_versions.h"
+#include "parallel/all_gather.h"
 #include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
@@ -32,7 +33,7 @@ namespace Nodus
       return;
 
     std::vector<DoFIndex> end_of_rank;
-    for (const DoFIndex n : dealii::Utilities::MPI::all_gather(communicator, owned.n_elements()))
+    for (const DoFIndex n : all_gather(communicator, owned.n_elements()))
       end_of_rank.push_back(n + (end_of_rank.empty() ? 0 : end_of_rank.back()));
     const auto owner = [&](const DoFIndex node)
     { return std::upper_bound(end_of_rank.begin(), end_of_rank.end(), dim * node) - end_of_rank.begin(); };

@@ -1,5 +1,6 @@
 #include "mesh/sides.h"
 #include "base/deal_ii_versions.h"
+#include "parallel/all_gather.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -127,7 +128,7 @@ namespace Nodus
               edges.emplace_back(std::min(a, b), std::max(a, b));
             }
     std::map<Edge, unsigned int> faces_at;
-    for (const auto &part : dealii::Utilities::MPI::all_gather(communicator_of(dof_handler), edges))
+    for (const auto &part : all_gather(communicator_of(dof_handler), edges))
       for (const Edge &edge : part)
         ++faces_at[edge];
     std::set<DoFIndex> rim;

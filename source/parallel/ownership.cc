@@ -1,4 +1,5 @@
 #include "parallel/ownership.h"
+#include "parallel/all_gather.h"
 #include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
@@ -22,7 +23,7 @@ namespace Nodus
       , communicator_(communicator)
       , rank_(dealii::Utilities::MPI::this_mpi_process(communicator))
   {
-    for (const unsigned int n : dealii::Utilities::MPI::all_gather(communicator, n_owned))
+    for (const unsigned int n : all_gather(communicator, n_owned))
       start_.push_back(start_.back() + n);
   }
 

@@ -1,4 +1,5 @@
 #include "run/checkpoint.h"
+#include "parallel/all_gather.h"
 #include "parallel/throw_everywhere.h"
 
 #include <deal.II/base/mpi.h>
@@ -182,8 +183,7 @@ namespace Nodus
       problem = write_file(unfinished / "common", common);
 
     std::string index = format_line + std::to_string(format) + '\n';
-    for (const auto &entry :
-         dealii::Utilities::MPI::all_gather(communicator_, index_entry(name, bytes.size(), checksum(bytes))))
+    for (const auto &entry : all_gather(communicator_, index_entry(name, bytes.size(), checksum(bytes))))
       index += entry;
     index += index_entry("common", common.size(), checksum(common)) + last_line + '\n';
     try

@@ -1,4 +1,5 @@
 #include "run/failure_report.h"
+#include "parallel/all_gather.h"
 #include "parallel/throw_everywhere.h"
 #include "run/unheld_bodies.h"
 
@@ -48,7 +49,7 @@ namespace Nodus
       };
       keep(items);
       std::vector<Ranked<Item>> all;
-      for (const auto &part : dealii::Utilities::MPI::all_gather(communicator, items))
+      for (const auto &part : all_gather(communicator, items))
         all.insert(all.end(), part.begin(), part.end());
       keep(all);
       std::vector<Item> first;

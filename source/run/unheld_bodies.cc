@@ -2,6 +2,7 @@
 #include "base/deal_ii_versions.h"
 #include "contact/loci.h"
 #include "mesh/sides.h"
+#include "parallel/all_gather.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -85,7 +86,7 @@ namespace Nodus
     const auto  owner  = points.find(flat_index);
     std::string here =
         owner == points.end() || !layout.owned[0].is_element(flat_index) ? "" : coordinates(owner->second);
-    for (const auto &part : dealii::Utilities::MPI::all_gather(model.communicator, here))
+    for (const auto &part : all_gather(model.communicator, here))
       if (!part.empty())
         here = part;
     return "the displacement of node " + here + ": its body is free to move; " +

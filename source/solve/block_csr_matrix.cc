@@ -1,4 +1,5 @@
 #include "solve/block_csr_matrix.h"
+#include "parallel/all_gather.h"
 #include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
@@ -19,7 +20,7 @@ namespace Nodus
   {
     make_unique_ascending(ghosts_);
     end_of_part_.push_back(ghosts_.size());
-    for (const unsigned int n : dealii::Utilities::MPI::all_gather(communicator, n_owned_))
+    for (const unsigned int n : all_gather(communicator, n_owned_))
       start_.push_back(start_.back() + n);
     make_exchange();
   }

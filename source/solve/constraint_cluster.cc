@@ -1,4 +1,5 @@
 #include "solve/constraint_cluster.h"
+#include "parallel/all_gather.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -46,7 +47,7 @@ namespace Nodus
         append(numbers, coupling.block);
       }
     }
-    for (const auto &part : dealii::Utilities::MPI::all_gather(communicator_, numbers))
+    for (const auto &part : all_gather(communicator_, numbers))
     {
       n_ranks_ += !part.empty();
       for (const double *p = part.data(); p != part.data() + part.size();)

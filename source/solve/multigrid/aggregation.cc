@@ -1,4 +1,5 @@
 #include "solve/multigrid/aggregation.h"
+#include "parallel/all_gather.h"
 #include "solve/mode_panel.h"
 #include "solve/multigrid/galerkin_product.h"
 
@@ -114,7 +115,7 @@ namespace Nodus
 
     std::vector<DoFIndex> &starts = P_.aggregates.starts;
     starts.assign(1, 0);
-    for (const unsigned int n_there : dealii::Utilities::MPI::all_gather(nodes_.communicator(), n_aggregates))
+    for (const unsigned int n_there : all_gather(nodes_.communicator(), n_aggregates))
       starts.push_back(starts.back() + n_there);
     P_.aggregates.first = starts[dealii::Utilities::MPI::this_mpi_process(nodes_.communicator())];
   }

@@ -1,4 +1,5 @@
 #include "solve/multigrid/coarse_solver.h"
+#include "parallel/all_gather.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -22,7 +23,7 @@ namespace Nodus
       , values_(n_)
   {
     const NodeMap &nodes = matrix.map();
-    for (const auto n : dealii::Utilities::MPI::all_gather(communicator_, dim * nodes.n_owned()))
+    for (const auto n : all_gather(communicator_, dim * nodes.n_owned()))
     {
       start_.push_back(start_.empty() ? 0 : start_.back() + count_.back());
       count_.push_back(n);
@@ -41,7 +42,7 @@ namespace Nodus
                                                          block[transposed ? dim * d + c : dim * c + d]})
                                entries.push_back(number);
                      });
-    const auto of_all = dealii::Utilities::MPI::all_gather(communicator_, entries);
+    const auto of_all = all_gather(communicator_, entries);
     if (n_ <= largest_dense)
       factorise_dense(of_all);
     else
