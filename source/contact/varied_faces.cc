@@ -70,7 +70,7 @@ namespace Nodus
                            face.slaves.end(),
                            [&](const unsigned int k) { return k < of_site_.size() && active[k]; }))
             continue;
-          foreign_.push_back(std::make_unique<AveragedJump::Face>(AveragedJump::Face{p, f, {}, {}, 0.}));
+          foreign_.push_back(std::make_unique<AveragedJump::Face>(AveragedJump::Face{p, f, {}, {}, {}}));
           AveragedJump::find_points(pairs_[p], geometry_, rule, *foreign_.back());
           note(*foreign_.back(), active);
         }

@@ -4,7 +4,7 @@
 #include "run/model.h"
 #include "solve/bordered_system.h"
 #include "solve/newton.h"
-#include "solve/rescued_solver.h"
+#include "solve/chosen_solver.h"
 
 #include <string>
 #include <vector>
@@ -49,7 +49,7 @@ namespace Nodus
     /// are kept for correction(). @p free: a motion that nothing resists, then there are none.
     LinearSolver::Report solve(const LinearSystem       &system,
                                const TimeRates          *rates,
-                               RescuedSolver            &solver,
+                               ChosenSolver            &solver,
                                double                    relative_tolerance,
                                std::vector<BlockVector> &solutions,
                                std::string              &free);

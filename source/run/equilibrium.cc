@@ -53,22 +53,22 @@ namespace Nodus
                       &forces_.out_of_balance})
       v->reinit(layout.owned[0], model_.communicator);
     model_.solid->make_sparsity(system_.bulk);
-    LinearSolverParameters parameters = model_.parameters.linear_solver;
-    parameters.type                   = chosen_solver(model_.parameters, model_.dof_handler.n_dofs());
-    solver_                           = std::make_unique<RescuedSolver>(parameters,
-                                              model_.parameters.strategy.uses(Remedy::direct_solver),
-                                              layout,
-                                              OwnedNodes(model_.dof_handler, *model_.mapping).X,
-                                              journal_.profile,
-                                              [this](const std::string &text)
-                                              {
-                                                journal_.count(Remedy::direct_solver);
-                                                journal_.console.remark(text);
-                                              });
+    solver_ = std::make_unique<ChosenSolver>(model_.parameters,
+                                             model_.parameters.strategy.uses(Remedy::direct_solver),
+                                             layout,
+                                             OwnedNodes(model_.dof_handler, *model_.mapping).X,
+                                             journal_.profile,
+                                             [this](const std::string &text)
+                                             {
+                                               journal_.count(Remedy::direct_solver);
+                                               journal_.console.remark(text);
+                                             });
   }
 
   void Equilibrium::begin_increment(const Increment &increment)
   {
+    if (increment.begin != increment_.begin)
+      n_attempts_ = 0;
     increment_ = increment;
     arc_length_.begin(increment);
     impose();
@@ -97,6 +97,7 @@ namespace Nodus
   {
     merged_   = merged;
     singular_ = false;
+    solver_->begin_attempt(n_attempts_++ > 0);
     if (arc_length_.acts() && increment_.end != increment_.begin) // of the attempt before
     {
       increment_.end = increment_.begin;

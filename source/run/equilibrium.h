@@ -8,8 +8,8 @@
 #include "run/load_stepping.h"
 #include "run/model.h"
 #include "run/norm_scales.h"
+#include "solve/chosen_solver.h"
 #include "solve/newton.h"
-#include "solve/rescued_solver.h"
 
 #include <memory>
 #include <string>
@@ -155,7 +155,7 @@ namespace Nodus
     Model                                   &model_;
     Journal                                 &journal_;
     States                                  &states_;
-    std::unique_ptr<RescuedSolver>           solver_;
+    std::unique_ptr<ChosenSolver>            solver_;
     DrivenRigidBodies                        driven_;
     ArcLength                                arc_length_;
     LinearSystem                             system_;
@@ -173,6 +173,7 @@ namespace Nodus
     DoFIndex                                 null_pivot_        = dealii::numbers::invalid_dof_index;
     bool                                     singular_          = false;
     bool                                     unstable_          = false;
+    unsigned int                             n_attempts_        = 0;     ///< from the start of this increment
     bool                                     motions_unknown_   = false; ///< an interval begins
     double                                   step_limit_        = 1.;    ///< part of the correction that may be taken
     double                                   prescribed_before_ = 0.; ///< still to be met at the last iterate, relative

@@ -9,7 +9,7 @@ namespace Nodus
 {
   namespace
   {
-    /// Inverse iterations of an increment: the motion at hand is that of the increment before.
+    /// Inverse iterations of an increment, with factors at hand: the motion is that of the increment before.
     constexpr unsigned int iterations_per_increment = 2;
     /// Displacements up to which eigenvalues are counted.
     constexpr DoFIndex largest_counted = 150000;
@@ -69,6 +69,8 @@ namespace Nodus
       stiffness = work;
       mode_     = motion.block(0);
       mode_ /= largest;
+      if (equilibrium_.solver_type() != LinearSolverParameters::Type::direct)
+        break; // one costs as much as a Newton iteration
     }
     return stiffness < 0.;
   }

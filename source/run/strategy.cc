@@ -17,7 +17,7 @@
 // | statuses cycle | regularised law; frozen statuses             | Status::find_period                 |
 // | Newton's step  | halved: inverted cells, line search          | Newton::take_step                   |
 // | Newton's step  | limited: through the other surface           | Equilibrium::limit_step             |
-// | linear solver  | the direct one                               | RescuedSolver                       |
+// | linear solver  | the direct one                               | ChosenSolver                       |
 
 namespace Nodus
 {

@@ -368,9 +368,9 @@ namespace Nodus
     const Parameters &p = model.parameters;
     console.line("  loops: geometry " + text_of(p.geometry_loop.mode) + ", threshold " +
                  text_of(p.threshold_loop.mode) + ", status " + text_of(p.status_loop.mode));
-    const auto solver = chosen_solver(p, model.dof_handler.n_dofs());
-    console.line("  linear solver: " + text_of(solver) +
-                 (solver == p.linear_solver.type ? "" : " (" + text_of(p.linear_solver.type) + ")"));
+    const std::string solver = solver_choice(p, model.dof_handler.n_dofs()).text();
+    console.line("  linear solver: " + solver +
+                 (solver == text_of(p.linear_solver.type) ? "" : " (" + text_of(p.linear_solver.type) + ")"));
     console.line("  load path: " + describe(p.load_stepping));
     console.line("  results: " + p.output.results_folder);
   }

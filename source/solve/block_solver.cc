@@ -50,6 +50,8 @@ namespace Nodus
       }
       return krylov.iterations;
     };
-    return matrix.solve_each(rhs, "Block solver", iterate, solutions);
+    Report report = matrix.solve_each(rhs, "Block solver", iterate, solutions);
+    report.work   = iterative_work(system, 1, report.iterations);
+    return report;
   }
 } // namespace Nodus

@@ -170,12 +170,16 @@ namespace Nodus
       block_solver_->set_profile(profile_);
       return block_solver_->solve(system, rhs, solutions, relative_tolerance);
     }
-    bool       first  = true; // of the right-hand sides that are not zero
-    const auto find_x = [&](const BlockVector &b, BlockVector &x)
+    unsigned int n_set_up = 0;
+    bool         first    = true; // of the right-hand sides that are not zero
+    const auto   find_x   = [&](const BlockVector &b, BlockVector &x)
     {
       const bool reuse = !first || hierarchy_fits(condensation->signature(), system.layout->communicator);
       if (!reuse)
+      {
         make_multigrid(system, *condensation);
+        ++n_set_up;
+      }
       unsigned int iterations;
       try
       {
@@ -186,6 +190,7 @@ namespace Nodus
         if (!reuse)
           throw;
         make_multigrid(system, *condensation);
+        ++n_set_up;
         iterations = iterate(matrix, *condensation, b, tolerance, x);
       }
       if (first)
@@ -197,6 +202,8 @@ namespace Nodus
       first = false;
       return iterations;
     };
-    return matrix.solve_each(rhs, "Condensed solver", find_x, solutions);
+    Report report = matrix.solve_each(rhs, "Condensed solver", find_x, solutions);
+    report.work   = iterative_work(system, n_set_up, report.iterations);
+    return report;
   }
 } // namespace Nodus

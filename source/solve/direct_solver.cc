@@ -61,6 +61,10 @@ namespace Nodus
       return code == -8 || code == -9 || code == -11 || code == -14 || code == -15 || (code <= -17 && code >= -20);
     }
 
+    /// Of LinearSolver::Report::work, fitted to models of 2000 to 52000 displacements: analysis, assembly of small
+    /// fronts and substitutions; operations of the elimination.
+    constexpr double work_per_entry = 0.2, work_per_operation = 1. / 12000.;
+
     double norm(const std::vector<double> &v)
     {
       double sum = 0.;
@@ -301,6 +305,8 @@ namespace Nodus
     }
 
     DMUMPS_STRUC_C &mumps = instance_->mumps;
+    report.work           = work_per_entry * dealii::Utilities::MPI::sum<double>(value_.size(), communicator_) +
+                  work_per_operation * mumps.rinfog[2];
     if (symmetric_)
       report.negative_pivots = infog(mumps, 12);
     std::vector<int> null_pivots(infog(mumps, 28));

@@ -3,13 +3,17 @@
 #include "solve/condensed_solver.h"
 #include "solve/direct_solver.h"
 
+#include <deal.II/base/mpi.h>
+
 namespace Nodus
 {
   namespace
   {
-    /// Displacements up to which a direct solution costs 2.5 times the CPU of an iterative one at most (3 to 7 times
-    /// for 50000: contrib/studies/scaling/size.md), which slender bodies repay.
-    constexpr DoFIndex largest_small = 20000;
+    /// Displacements up to which costs do not matter: the direct solver says more about a system.
+    constexpr DoFIndex largest_small = 1500;
+    /// Displacements up to which one direct solution is worth knowing its cost: 3 to 7 iterative ones for 50000
+    /// (contrib/studies/scaling/size.md).
+    constexpr DoFIndex largest_open = 20000;
   } // namespace
 
   void BlockLayout::reinit(BlockVector &v) const
@@ -20,18 +24,35 @@ namespace Nodus
     v.collect_sizes();
   }
 
-  LinearSolverParameters::Type chosen_solver(const Parameters &parameters, const DoFIndex n_displacements)
+  double iterative_work(const LinearSystem &system, const unsigned int n_set_up, const unsigned int n_iterations)
   {
-    using Type = LinearSolverParameters::Type;
-    if (parameters.linear_solver.type != Type::automatic)
-      return parameters.linear_solver.type;
+    // per block of the bulk: eliminating the multipliers, the hierarchy, one iteration (2000 to 52000 displacements)
+    constexpr double condensation = 0.15, hierarchy = 0.9, iteration = 0.08;
+    const double     n_blocks =
+        dealii::Utilities::MPI::sum<double>(system.bulk.values().size() / (dim * dim), system.layout->communicator);
+    return n_blocks * (condensation + hierarchy * n_set_up + iteration * n_iterations);
+  }
+
+  LinearSolverChoice solver_choice(const Parameters &parameters, const DoFIndex n_displacements)
+  {
+    using Type      = LinearSolverParameters::Type;
+    const Type type = parameters.linear_solver.type;
+    if (type != Type::automatic)
+      return {type == Type::direct, type};
     if (n_displacements <= largest_small)
-      return Type::direct;
+      return {true, Type::direct};
+    Type iterative = Type::condensed;
     for (const auto &pair : parameters.contact_pairs)
       if (pair.scheme == ContactPairParameters::Scheme::integration_point ||
           pair.weights == ContactPairParameters::Weights::consistent)
-        return Type::block;
-    return Type::condensed;
+        iterative = Type::block;
+    return {n_displacements <= largest_open, iterative};
+  }
+
+  std::string LinearSolverChoice::text() const
+  {
+    const std::string name = text_of(iterative);
+    return open() ? "direct or " + name + ", whichever costs less" : name;
   }
 
   std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverParameters &parameters,

@@ -19,6 +19,9 @@ namespace Nodus
     {
       unsigned int iterations        = 0;  ///< Krylov iterations; 0 for direct
       double       relative_residual = 0.; ///< of the true system, 2-norm
+      /// What it cost, on all ranks [CPU microseconds of the machine of contrib/studies/scaling]: an estimate from
+      /// counts, the same in every run
+      double work = 0.;
       /// direct only: negative pivots (a stable system has one for each multiplier) and the flat indices of null pivots
       long                  negative_pivots = -1;
       std::vector<DoFIndex> null_pivots;
@@ -68,8 +71,23 @@ namespace Nodus
     Profile *profile_ = nullptr;
   };
 
-  /// What the parameters ask for; of automatic, what is faster with so many displacements.
-  LinearSolverParameters::Type chosen_solver(const Parameters &parameters, DoFIndex n_displacements);
+  /// LinearSolver::Report::work of Krylov iterations with multigrid, and of setting the hierarchy up. Collective.
+  double iterative_work(const LinearSystem &system, unsigned int n_set_up, unsigned int n_iterations);
+
+  /// What a model may take, as the parameters ask for.
+  struct LinearSolverChoice
+  {
+    bool                         direct;
+    LinearSolverParameters::Type iterative; ///< direct: none
+
+    /// Whichever costs less.
+    bool open() const
+    {
+      return direct && iterative != LinearSolverParameters::Type::direct;
+    }
+    std::string text() const;
+  };
+  LinearSolverChoice solver_choice(const Parameters &parameters, DoFIndex n_displacements);
 
   /// @param parameters whose type is not automatic
   /// @param node_positions of the owned displacement nodes, in the order of their degrees of freedom, for the

@@ -40,7 +40,7 @@ namespace Nodus
   {
     enum class Type
     {
-      automatic, ///< see chosen_solver
+      automatic, ///< see ChosenSolver
       direct,
       block,
       condensed

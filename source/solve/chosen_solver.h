@@ -1,0 +1,79 @@
+#ifndef nodus_solve_chosen_solver_h
+#define nodus_solve_chosen_solver_h
+
+#include "solve/linear_solver.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace Nodus
+{
+  /// The linear solver that the parameters ask for.
+  ///
+  /// With Type = automatic small models take the direct one, large ones the iterative one. Those between take whichever
+  /// costs less: the first system goes to the direct one and the second to the other; the one that costs more is tried
+  /// again after a number of systems that doubles each time. Costs are counted (LinearSolver::Report::work), not timed,
+  /// so that a run can be repeated to the last digit. After an attempt that failed systems go to the direct one, which
+  /// says more about them.
+  ///
+  /// Where an iterative solver fails the direct one steps in until begin_increment(), because the next systems are no
+  /// easier, if they are not too large for that.
+  class ChosenSolver : public LinearSolver
+  {
+  public:
+    /// @p rescue: whether there is a direct solver to fall back on; @p remark says what happened. The layout outlives
+    /// the solver.
+    ChosenSolver(const Parameters                               &parameters,
+                 bool                                            rescue,
+                 const BlockLayout                              &layout,
+                 const std::vector<Point>                       &node_positions,
+                 Profile                                        &profile,
+                 const std::function<void(const std::string &)> &remark);
+
+    void begin_increment()
+    {
+      failed_ = false;
+    }
+    /// @param again after another one in the same increment, or after one that was cut back
+    void begin_attempt(const bool again)
+    {
+      again_ = again;
+    }
+    /// Of the last system.
+    LinearSolverParameters::Type type() const
+    {
+      return last_is_direct_ ? LinearSolverParameters::Type::direct : choice_.iterative;
+    }
+
+    using LinearSolver::solve;
+    Report solve(const LinearSystem                     &system,
+                 const std::vector<const BlockVector *> &rhs,
+                 std::vector<BlockVector>               &solutions,
+                 double                                  relative_tolerance) override;
+    /// Where the iterative solver was chosen it solves to a hundredth: that is enough to tell an instability.
+    bool solve_again(const LinearSystem &system, const BlockVector &rhs, BlockVector &solution) override;
+
+  private:
+    bool          takes_direct() const;
+    LinearSolver &direct();
+    LinearSolver &iterative();
+    void          count(double work, bool of_direct);
+
+    const LinearSolverChoice                 choice_;
+    LinearSolverParameters                   parameters_; ///< of the iterative solver
+    bool                                     rescue_;
+    const BlockLayout                       &layout_;
+    const std::vector<Point>                 node_positions_;
+    std::function<void(const std::string &)> remark_;
+    std::unique_ptr<LinearSolver>            direct_, iterative_; ///< once they were needed
+    bool                                     failed_ = false;     ///< the iterative one has, in this increment
+    bool                                     again_  = false;     ///< another attempt
+    bool         uses_direct_ = false, last_is_direct_ = false;   ///< of those to choose from; for the last system
+    double       direct_work_ = 0., iterative_work_ = 0.;         ///< of a system; 0: unknown
+    unsigned int in_a_row_ = 0;                                   ///< systems that the one in use has solved
+    unsigned int wait_     = 8;                                   ///< systems until the iterative one is tried again
+  };
+} // namespace Nodus
+
+#endif

@@ -1,0 +1,98 @@
+// Type = automatic with a model of 2565 displacements: the first system goes to the direct solver, the next ones to the
+// condensed one, which keeps them where it costs less by its own count. Where it does not, because it takes many
+// iterations, the direct solver has them back after three. Another attempt goes to the direct solver; so does what the
+// condensed one cannot solve, and the answers are those of the direct solver in any case.
+
+#include "solve/chosen_solver.h"
+#include "model_problem.h"
+
+#include <deal.II/base/conditional_ostream.h>
+#include <deal.II/base/mpi.h>
+
+#include <iostream>
+
+using namespace Nodus;
+using Type = LinearSolverParameters::Type;
+
+namespace
+{
+  constexpr unsigned int n_systems = 6;
+
+  class Run
+  {
+  public:
+    Run(const ModelProblem::TwoCubes &problem, const unsigned int maximum_iterations)
+        : problem_(problem)
+        , solver_(parameters(maximum_iterations), true, problem.layout, problem.node_positions, profile_, {})
+    {
+    }
+    /// @returns a letter for what solved each of some systems
+    std::string solve(const double tolerance, const bool again = false)
+    {
+      std::string letters;
+      solver_.begin_increment();
+      solver_.begin_attempt(again);
+      for (unsigned int n = 0; n < n_systems; ++n)
+      {
+        const auto report = solver_.solve(problem_.system, solution, tolerance);
+        letters += solver_.type() == Type::direct ? 'd' : 'c';
+        (solver_.type() == Type::direct ? direct_work : condensed_work) = report.work;
+      }
+      return letters;
+    }
+
+    BlockVector solution;
+    double      direct_work = 0., condensed_work = 0.;
+
+  private:
+    static Parameters parameters(const unsigned int maximum_iterations)
+    {
+      Parameters p;
+      p.linear_solver.type               = Type::automatic;
+      p.linear_solver.maximum_iterations = maximum_iterations;
+      return p;
+    }
+
+    const ModelProblem::TwoCubes &problem_;
+    Profile                       profile_;
+    ChosenSolver                  solver_;
+  };
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  dealii::ConditionalOStream out(std::cout, dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0);
+
+  ModelProblem::Options options;
+  options.n_cells = 6;
+  const ModelProblem::TwoCubes problem(options);
+  out << "displacements: " << problem.layout.n_u << std::endl;
+
+  BlockVector reference;
+  make_linear_solver(LinearSolverParameters(), problem.layout, problem.node_positions)
+      ->solve(problem.system, reference);
+  const auto difference = [&](BlockVector x)
+  {
+    x -= reference;
+    return x.l2_norm() / reference.l2_norm();
+  };
+
+  Run coarse(problem, 500), fine(problem, 500), failing(problem, 1);
+  out << "tolerance 1e-2: " << coarse.solve(1e-2) << std::endl;
+  out << "another attempt: " << coarse.solve(1e-2, true) << std::endl;
+  out << "the next increment: " << coarse.solve(1e-2) << std::endl;
+  out << "condensed costs less: " << (coarse.condensed_work < coarse.direct_work) << std::endl;
+  out << "tolerance 1e-10: " << fine.solve(1e-10) << std::endl;
+  out << "condensed costs less: " << (fine.condensed_work < fine.direct_work) << std::endl;
+  out << "difference below 1e-8: " << (difference(fine.solution) < 1e-8) << std::endl;
+  out << "one iteration allowed: " << failing.solve(1e-10) << std::endl;
+  out << "difference below 1e-10: " << (difference(failing.solution) < 1e-10) << std::endl;
+
+  options.slip_norm       = .3;
+  options.threshold_range = 1e4;
+  const ModelProblem::TwoCubes hard(options);
+  Run                          many(hard, 500);
+  out << "many iterations: " << many.solve(1e-10) << std::endl;
+  out << "condensed costs less: " << (many.condensed_work < many.direct_work) << std::endl;
+}
