@@ -175,7 +175,7 @@ def test_verdict_of_the_program():
 
 def test_files():
     """All cases of the project are read; written and read again they are the same."""
-    folders = [os.path.join(SOURCE, *names) for names in (("prm",), ("contrib", "examples", "own_program"))]
+    folders = [os.path.join(SOURCE, *names) for names in (("prm",), ("prm", "gallery"), ("contrib", "examples", "own_program"))]
     paths = [path for folder in folders for path in sorted(glob.glob(os.path.join(folder, "*.prm")))]
     paths.append(os.path.join(SOURCE, "tests", "parameters", "every_key.prm"))
     same = 0
