@@ -67,9 +67,8 @@ namespace Nodus
 
   void Equilibrium::begin_increment(const Increment &increment)
   {
-    if (increment.begin != increment_.begin)
-      n_attempts_ = 0;
-    increment_ = increment;
+    const bool cut_back = increment.begin == increment_.begin && increment.duration() < increment_.duration();
+    increment_          = increment;
     arc_length_.begin(increment);
     impose();
     model_.stabilisation->relax(0.);
@@ -78,7 +77,7 @@ namespace Nodus
     forces_.drag  = 0.;
     motions_unknown_ =
         !increment.on_new_mesh() && increment.begins_interval() && model_.contact->surfaces().n_pairs() > 0;
-    solver_->begin_increment();
+    solver_->begin_increment(cut_back);
   }
 
   /// The conditions at the end of the increment.
@@ -97,7 +96,6 @@ namespace Nodus
   {
     merged_   = merged;
     singular_ = false;
-    solver_->begin_attempt(n_attempts_++ > 0);
     if (arc_length_.acts() && increment_.end != increment_.begin) // of the attempt before
     {
       increment_.end = increment_.begin;

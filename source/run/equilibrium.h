@@ -173,7 +173,6 @@ namespace Nodus
     DoFIndex                                 null_pivot_        = dealii::numbers::invalid_dof_index;
     bool                                     singular_          = false;
     bool                                     unstable_          = false;
-    unsigned int                             n_attempts_        = 0;     ///< from the start of this increment
     bool                                     motions_unknown_   = false; ///< an interval begins
     double                                   step_limit_        = 1.;    ///< part of the correction that may be taken
     double                                   prescribed_before_ = 0.; ///< still to be met at the last iterate, relative

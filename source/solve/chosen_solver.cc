@@ -60,7 +60,7 @@ namespace Nodus
   {
     if (!choice_.open())
       return choice_.direct || failed_;
-    if (again_ || direct_work_ == 0.)
+    if (cut_back_ || direct_work_ == 0.)
       return true;
     return iterative_work_ > direct_work_ && (uses_direct_ ? in_a_row_ < wait_ : in_a_row_ >= trial);
   }

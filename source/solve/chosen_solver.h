@@ -14,8 +14,8 @@ namespace Nodus
   /// With Type = automatic small models take the direct one, large ones the iterative one. Those between take whichever
   /// costs less: the first system goes to the direct one and the second to the other; the one that costs more is tried
   /// again after a number of systems that doubles each time. Costs are counted (LinearSolver::Report::work), not timed,
-  /// so that a run can be repeated to the last digit. After an attempt that failed systems go to the direct one, which
-  /// says more about them.
+  /// so that a run can be repeated to the last digit. Where an increment was cut back systems go to the direct one,
+  /// which says more about them.
   ///
   /// Where an iterative solver fails the direct one steps in until begin_increment(), because the next systems are no
   /// easier, if they are not too large for that.
@@ -31,14 +31,11 @@ namespace Nodus
                  Profile                                        &profile,
                  const std::function<void(const std::string &)> &remark);
 
-    void begin_increment()
+    /// @param cut_back from a longer one, which failed
+    void begin_increment(const bool cut_back)
     {
-      failed_ = false;
-    }
-    /// @param again after another one in the same increment, or after one that was cut back
-    void begin_attempt(const bool again)
-    {
-      again_ = again;
+      failed_   = false;
+      cut_back_ = cut_back;
     }
     /// Of the last system.
     LinearSolverParameters::Type type() const
@@ -67,12 +64,12 @@ namespace Nodus
     const std::vector<Point>                 node_positions_;
     std::function<void(const std::string &)> remark_;
     std::unique_ptr<LinearSolver>            direct_, iterative_; ///< once they were needed
-    bool                                     failed_ = false;     ///< the iterative one has, in this increment
-    bool                                     again_  = false;     ///< another attempt
-    bool         uses_direct_ = false, last_is_direct_ = false;   ///< of those to choose from; for the last system
-    double       direct_work_ = 0., iterative_work_ = 0.;         ///< of a system; 0: unknown
-    unsigned int in_a_row_ = 0;                                   ///< systems that the one in use has solved
-    unsigned int wait_     = 8;                                   ///< systems until the iterative one is tried again
+    bool                                     failed_   = false;   ///< the iterative one has, in this increment
+    bool                                     cut_back_ = false;
+    bool         uses_direct_ = false, last_is_direct_ = false; ///< of those to choose from; for the last system
+    double       direct_work_ = 0., iterative_work_ = 0.;       ///< of a system; 0: unknown
+    unsigned int in_a_row_ = 0;                                 ///< systems that the one in use has solved
+    unsigned int wait_     = 8;                                 ///< systems until the iterative one is tried again
   };
 } // namespace Nodus
 

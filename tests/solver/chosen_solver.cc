@@ -1,7 +1,7 @@
 // Type = automatic with a model of 2565 displacements: the first system goes to the direct solver, the next ones to the
 // condensed one, which keeps them where it costs less by its own count. Where it does not, because it takes many
-// iterations, the direct solver has them back after three. Another attempt goes to the direct solver; so does what the
-// condensed one cannot solve, and the answers are those of the direct solver in any case.
+// iterations, the direct solver has them back after three. An increment that was cut back goes to the direct solver; so
+// does what the condensed one cannot solve, and the answers are those of the direct solver in any case.
 
 #include "solve/chosen_solver.h"
 #include "model_problem.h"
@@ -27,11 +27,10 @@ namespace
     {
     }
     /// @returns a letter for what solved each of some systems
-    std::string solve(const double tolerance, const bool again = false)
+    std::string solve(const double tolerance, const bool cut_back = false)
     {
       std::string letters;
-      solver_.begin_increment();
-      solver_.begin_attempt(again);
+      solver_.begin_increment(cut_back);
       for (unsigned int n = 0; n < n_systems; ++n)
       {
         const auto report = solver_.solve(problem_.system, solution, tolerance);
@@ -80,7 +79,7 @@ int main(int argc, char **argv)
 
   Run coarse(problem, 500), fine(problem, 500), failing(problem, 1);
   out << "tolerance 1e-2: " << coarse.solve(1e-2) << std::endl;
-  out << "another attempt: " << coarse.solve(1e-2, true) << std::endl;
+  out << "cut back: " << coarse.solve(1e-2, true) << std::endl;
   out << "the next increment: " << coarse.solve(1e-2) << std::endl;
   out << "condensed costs less: " << (coarse.condensed_work < coarse.direct_work) << std::endl;
   out << "tolerance 1e-10: " << fine.solve(1e-10) << std::endl;
