@@ -58,6 +58,7 @@ namespace Nodus
       const Count counts[] = {{"subdivided_hyper_rectangle", {0}},
                               {"subdivided_hyper_cube", {0, 0, 0}},
                               {"cylinder_shell", {3, 4}},
+                              {"truncated_cone", {}},
                               {"concentric_hyper_shells", {3}},
                               {"hyper_cube_with_cylindrical_hole", {3}},
                               {"plate_with_a_hole", {10}},
@@ -257,6 +258,11 @@ namespace Nodus
         n *= given[3] == "0" ? std::max(1., dealii::numbers::PI * (inner + outer) / (outer - inner)) : 1.;
         n *= given[4] == "0" ? std::max(1., length / (outer - inner)) : 1.;
       }
+      if (name == "truncated_cone") // slices of five cells, as long as the larger radius
+        n *= 5. * std::max(1.,
+                           dealii::Utilities::string_to_double(given[2]) /
+                               std::max(dealii::Utilities::string_to_double(given[0]),
+                                        dealii::Utilities::string_to_double(given[1])));
       for (const unsigned int i : count->arguments)
       {
         const auto kind    = find(name)->arguments[i].kind;

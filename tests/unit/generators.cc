@@ -72,5 +72,8 @@ int main(int argc, char **argv)
          Generators::mistake_in_arguments("subdivided_hyper_rectangle", "0.5,0.6; 1; 1 : 0,0,0 : 1,1,1 : true"));
   report("cells along the edge",
          std::to_string(Generators::n_cells("subdivided_hyper_rectangle", "0.5,0.5; 1; 1,2,3 : 0,0,0 : 1,1,6 : true")));
+  report("cells of a long cone, counted and made",
+         std::to_string(static_cast<unsigned int>(Generators::n_cells("truncated_cone", "1 : 0.5 : 20"))) + ", " +
+             std::to_string(cells_of("truncated_cone", "1 : 0.5 : 20")));
   check("the name of another generator of deal.II is left to it", Generators::mistake_in_name("simplex").empty());
 }
