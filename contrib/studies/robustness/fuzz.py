@@ -13,8 +13,9 @@ A fault is
   - no end within the CPU time (or three times that on the clock), or more memory than the limit;
   - exit code 1 without exactly one line, "nodus: input error: ..." or "nodus: no solution: ...", on standard error, or with
     words of the implementation in it (exceptions, std::, names of source files);
-  - exit code 0 with nan or inf in a table, or with *.incomplete left;
-  - an input error that leaves files behind, or changes those that were there.
+  - exit code 0 with nan or inf in a table, or with *.incomplete left that was not there before;
+  - an input error that leaves files behind, or changes those that were there. One that the solution alone can show (a friction
+    factor that is negative at a slip rate) may leave what was written before it, if that is complete.
 """
 
 import argparse
@@ -102,12 +103,12 @@ def contents(folder):
     return found
 
 
-def nonsense(folder):
-    """What should not be in the results of a run that ended well."""
+def nonsense(folder, before):
+    """What should not be in the results of a run that ended well, or of the part of it that did."""
     for place, folders, names in os.walk(folder):
         for name in folders + names:
             path = os.path.relpath(os.path.join(place, name), folder)
-            if name.endswith(".incomplete"):
+            if name.endswith(".incomplete") and path not in before:
                 return f"{path} is left"
             if name.endswith(".csv"):
                 with open(os.path.join(place, name), errors="replace") as file:
@@ -124,7 +125,7 @@ def judge(ended, folder, before):
     if ended.code < 0:
         return "fault", f"death by {signal.Signals(-ended.code).name}: {ended.errors.strip()[:200]}"
     if ended.code == 0:
-        wrong = nonsense(folder)
+        wrong = nonsense(folder, before)
         return ("fault", "exit code 0, but " + wrong) if wrong else ("accepted", "")
     lines = [line for line in ended.errors.split("\n") if line.strip()]
     if ended.code != 1:
@@ -139,6 +140,9 @@ def judge(ended, folder, before):
         return "fault", f"'{internal[0]}' in: {lines[0][:400]}"
     if found[1] == "no solution":
         return "no solution", ""
+    if "for the slip rate" in lines[0]:
+        wrong = nonsense(folder, before)
+        return ("fault", "an error at a slip rate, and " + wrong) if wrong else ("refused", "")
     after = contents(folder)
     changed = sorted(path for path in after.keys() | before.keys() if after.get(path) != before.get(path))
     return ("fault",
