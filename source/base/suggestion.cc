@@ -37,8 +37,9 @@ namespace Nodus
     {
       std::vector<std::pair<unsigned int, std::string>> near;
       for (const auto &candidate : candidates)
-        if (const unsigned int distance = edit_distance(name, candidate, part); distance <= farthest)
-          near.emplace_back(distance, candidate);
+        if (name.size() <= candidate.size() + farthest) // otherwise as many letters at least are too many
+          if (const unsigned int distance = edit_distance(name, candidate, part); distance <= farthest)
+            near.emplace_back(distance, candidate);
       std::stable_sort(near.begin(), near.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
       std::vector<std::string> names;
       for (const auto &[distance, candidate] : near)
