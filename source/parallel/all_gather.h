@@ -20,15 +20,24 @@ namespace Nodus
     if (n_ranks == 1)
       return {object};
     const std::vector<char> own  = dealii::Utilities::pack(object, false);
-    const int               size = static_cast<int>(own.size());
-    std::vector<int>        sizes(n_ranks), starts(n_ranks, 0);
-    MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, communicator);
-    const double total = std::accumulate(sizes.begin(), sizes.end(), 0.);
+    const double            size = own.size();
+    std::vector<double>     all_sizes(n_ranks);
+    MPI_Allgather(&size, 1, MPI_DOUBLE, all_sizes.data(), 1, MPI_DOUBLE, communicator);
+    const double total = std::accumulate(all_sizes.begin(), all_sizes.end(), 0.);
     AssertThrow(total < std::numeric_limits<int>::max(),
                 dealii::ExcMessage("More than 2 GiB cannot be gathered in one message."));
+    const std::vector<int> sizes(all_sizes.begin(), all_sizes.end());
+    std::vector<int>       starts(n_ranks, 0);
     std::partial_sum(sizes.begin(), sizes.end() - 1, starts.begin() + 1);
     std::vector<char> all(static_cast<std::size_t>(total));
-    MPI_Allgatherv(own.data(), size, MPI_CHAR, all.data(), sizes.data(), starts.data(), MPI_CHAR, communicator);
+    MPI_Allgatherv(own.data(),
+                   sizes[dealii::Utilities::MPI::this_mpi_process(communicator)],
+                   MPI_CHAR,
+                   all.data(),
+                   sizes.data(),
+                   starts.data(),
+                   MPI_CHAR,
+                   communicator);
     std::vector<T> objects;
     objects.reserve(n_ranks);
     for (unsigned int rank = 0; rank < n_ranks; ++rank)

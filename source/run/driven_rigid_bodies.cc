@@ -190,7 +190,7 @@ namespace Nodus
 
   LinearSolver::Report DrivenRigidBodies::solve(const LinearSystem       &system,
                                                 const TimeRates *const    rates,
-                                                ChosenSolver            &solver,
+                                                ChosenSolver             &solver,
                                                 const double              relative_tolerance,
                                                 std::vector<BlockVector> &solutions,
                                                 std::string              &free)

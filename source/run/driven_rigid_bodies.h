@@ -3,8 +3,8 @@
 
 #include "run/model.h"
 #include "solve/bordered_system.h"
-#include "solve/newton.h"
 #include "solve/chosen_solver.h"
+#include "solve/newton.h"
 
 #include <string>
 #include <vector>
@@ -49,7 +49,7 @@ namespace Nodus
     /// are kept for correction(). @p free: a motion that nothing resists, then there are none.
     LinearSolver::Report solve(const LinearSystem       &system,
                                const TimeRates          *rates,
-                               ChosenSolver            &solver,
+                               ChosenSolver             &solver,
                                double                    relative_tolerance,
                                std::vector<BlockVector> &solutions,
                                std::string              &free);

@@ -15,6 +15,8 @@ namespace Nodus
     constexpr unsigned int trial = 3;
     /// Weight of the last system in that mean.
     constexpr double weight = 0.3;
+    /// Systems of the direct solver after which the iterative one is tried again at the latest.
+    constexpr unsigned int longest_wait = 1024;
   } // namespace
 
   ChosenSolver::ChosenSolver(const Parameters                               &parameters,
@@ -32,7 +34,7 @@ namespace Nodus
   {
     profile_         = &profile;
     parameters_.type = choice_.iterative;
-    if (choice_.open())
+    if (choice_.open() && rescue)
       parameters_.maximum_iterations = std::min(parameters_.maximum_iterations, most_iterations);
   }
 
@@ -69,7 +71,7 @@ namespace Nodus
   {
     in_a_row_ = of_direct == uses_direct_ ? in_a_row_ + 1 : 1;
     if (of_direct && !uses_direct_)
-      wait_ *= 2;
+      wait_ = std::min(2 * wait_, longest_wait);
     else if (!of_direct)
       iterative_work_ = in_a_row_ == 1 ? work : (1. - weight) * iterative_work_ + weight * work;
     uses_direct_ = of_direct;
@@ -94,13 +96,18 @@ namespace Nodus
         if (!rescue_ || layout_.n_u > largest_direct)
           throw;
         last_is_direct_ = true;
-        failed_         = true;
         if (!choice_.open())
+        {
+          failed_ = true;
           remark_(std::string(failure.what()) +
                   "; this correction comes from the direct solver, and so do those after it in this increment");
+        }
       }
     const Report report = direct().solve(system, rhs, solutions, relative_tolerance);
+    const bool   known  = direct_work_ > 0.;
     direct_work_        = report.work;
+    if (!choice_.open() || !known || cut_back_)
+      return report; // costs had no say
     count(direct_in_use ? report.work : iterative_work_ + report.work,
           direct_in_use); // that of both where one has failed
     return report;

@@ -17,8 +17,9 @@ namespace Nodus
   /// so that a run can be repeated to the last digit. Where an increment was cut back systems go to the direct one,
   /// which says more about them.
   ///
-  /// Where an iterative solver fails the direct one steps in until begin_increment(), because the next systems are no
-  /// easier, if they are not too large for that.
+  /// Where an iterative solver fails the direct one steps in, if the system is not too large for that. Where there is a
+  /// choice the cost of both counts for the iterative one; otherwise the direct one stays until begin_increment(),
+  /// because the next systems are no easier.
   class ChosenSolver : public LinearSolver
   {
   public:

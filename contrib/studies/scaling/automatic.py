@@ -14,8 +14,8 @@ import common  # noqa: E402
 
 SOLVERS = ("automatic", "direct", "condensed", "block")
 
-CONCLUSION = """Fourteen of these cases are within a tenth of the fastest, the others lose 0.1 to 1.3 s. One run each, CPU seconds of the whole run: differences of a tenth are those of the machine. Up to 1500 displacements
-`automatic` is the direct solver, beyond 20000 the condensed one (the block solver where integration points or consistent weights
+CONCLUSION = """Fourteen of these cases are within a tenth of the fastest, the others lose 0.1 to 1.3 s. One run each, CPU seconds of
+the whole run: differences of a tenth are those of the machine. Up to 1500 displacements `automatic` is the direct solver, beyond 20000 the condensed one (the block solver where integration points or consistent weights
 ask for it). Between them the cost of a system is counted: 0.2 us per entry and 1/12000 us per operation for the direct solver, for
 the iterative ones 0.15 us per 3x3 block of the stiffness, 0.9 us where the hierarchy is set up and 0.08 us per iteration. These
 numbers come from systems of first_case, hertz, cantilevers, ironing and metal_blank, which they reproduce to a fifth but
