@@ -2,6 +2,7 @@
 #include "parallel/owned_values.h"
 #include "parallel/wait_for_all.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace Nodus
@@ -44,7 +45,7 @@ namespace Nodus
         law_residual_[4 * point.slaves[a] + 3] -= std::abs(law.nodes[a].shape) * Wt;
   }
 
-  /// All that the local unknowns of a point consist of (eq. 35).
+  /// All that the local unknowns of a point consist of (eq. 35), by index in the system.
   void ContactScatter::find_unknowns(const ContactPoint &point, const LawSum &sum) const
   {
     unknowns_.clear();
@@ -86,6 +87,15 @@ namespace Nodus
       unknowns_.push_back({layout.lambda(k), first, 1, Vector3({1., 0., 0.})});
       for (unsigned int i = 0; i < 2; ++i)
         unknowns_.push_back({layout.Lambda(k, i), first + 1 + i, 1, Vector3({1., 0., 0.})});
+    }
+
+    std::sort(unknowns_.begin(), unknowns_.end(), [](const Unknown &u, const Unknown &v) { return u.index < v.index; });
+    rows_.clear();
+    for (Unknown &u : unknowns_)
+    {
+      if (rows_.empty() || rows_.back() != u.index)
+        rows_.push_back(u.index);
+      u.row = rows_.size() - 1;
     }
   }
 
@@ -129,17 +139,23 @@ namespace Nodus
         law_rhs_[3 * point.slaves[a] + l] += rhs(sum.first_node + 3 * a + l);
     }
 
+    // B A B^T with the rows of B from find_unknowns(): entries of one place are added up here, for the sites of a face
+    // have most of their nodes in common.
     find_unknowns(point, sum);
-    LocalVector row(n);
-    for (const Unknown &u : unknowns_)
-    {
-      row = u.part[0] * A.row(u.first).transpose();
-      for (unsigned int i = 1; i < u.n; ++i)
-        row += u.part[i] * A.row(u.first + i).transpose();
-      for (const Unknown &v : unknowns_)
-        if (const double value = v.of(row.data()); value != 0.)
-          add_entry(system.contact, u.index, v.index, value, system);
-    }
+    const unsigned int m = rows_.size();
+    half_.assign(m * n, 0.);
+    product_.assign(m * m, 0.);
+    Eigen::Map<Eigen::MatrixXd> half(half_.data(), m, n), product(product_.data(), m, m);
+    for (unsigned int l = 0; l < n; ++l)
+      for (const Unknown &u : unknowns_)
+        half(u.row, l) += u.of(A.col(l).data());
+    for (const Unknown &v : unknowns_)
+      for (unsigned int i = 0; i < v.n; ++i)
+        product.col(v.row) += v.part[i] * half.col(v.first + i);
+    for (unsigned int j = 0; j < m; ++j)
+      for (unsigned int i = 0; i < m; ++i)
+        if (const double value = product(i, j); value != 0.)
+          add_entry(system.contact, rows_[i], rows_[j], value, system);
   }
 
   void ContactScatter::add_variation(const ContactPoint              &point,
@@ -149,12 +165,15 @@ namespace Nodus
                                      LinearSystem                    &system) const
   {
     find_unknowns(point, sum);
-    for (unsigned int m = 0; m < slaves.size(); ++m)
+    for (unsigned int k = 0; k < slaves.size(); ++k)
     {
-      const DoFIndex lambda = surfaces_.layout().lambda(surfaces_.multiplier(slaves[m]));
+      const DoFIndex lambda = surfaces_.layout().lambda(surfaces_.multiplier(slaves[k]));
+      half_.assign(rows_.size(), 0.);
       for (const Unknown &u : unknowns_)
-        if (const double value = u.of(derivative.col(m).data()); value != 0.)
-          add_entry(system.variation, u.index, lambda, value, system);
+        half_[u.row] += u.of(derivative.col(k).data());
+      for (unsigned int i = 0; i < rows_.size(); ++i)
+        if (half_[i] != 0.)
+          add_entry(system.variation, rows_[i], lambda, half_[i], system);
     }
   }
 

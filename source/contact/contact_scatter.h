@@ -66,6 +66,7 @@ namespace Nodus
       DoFIndex     index; ///< flat
       unsigned int first, n;
       Vector3      part;
+      unsigned int row = 0; ///< of all with this index
 
       double of(const double *const local) const
       {
@@ -80,11 +81,15 @@ namespace Nodus
     void add_entry(TripletMatrix &inner, DoFIndex row, DoFIndex column, double value, LinearSystem &system) const;
     void add_resultant(std::vector<double> &sum, const RigidShare &share, const Vector3 &force) const;
 
-    const ContactSurfaces       &surfaces_;
-    const JumpOperator          &jump_;
-    const ContactState          &state_;
-    std::vector<RigidShare>      shares_;   ///< of the sites, empty without driven bodies
-    mutable std::vector<Unknown> unknowns_; ///< scratch
+    const ContactSurfaces  &surfaces_;
+    const JumpOperator     &jump_;
+    const ContactState     &state_;
+    std::vector<RigidShare> shares_; ///< of the sites, empty without driven bodies
+    // scratch
+    mutable std::vector<Unknown>  unknowns_;
+    mutable std::vector<DoFIndex> rows_; ///< the indices of the unknowns, each once
+    mutable std::vector<double>   half_, product_;
+
     /// Three components of each jump; lambda, two Lambda and, in the residual, the friction weight of each slave node.
     /// The points of this rank add to ghosts, too.
     std::vector<double> jump_residual_, jump_rhs_, law_residual_, law_rhs_;
