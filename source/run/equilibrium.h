@@ -38,6 +38,7 @@ namespace Nodus
     Vector released;       ///< what is left of reactions where nothing is prescribed any more
     Vector out_of_balance; ///< the sum, zero where prescribed
     double scale   = 0.;   ///< that they are relative to in the norms
+    double rest    = 0.;   ///< largest one out of balance over the scale: e_F (eq. N3)
     double largest = 0.;   ///< of all nodes and kinds
     double noise   = 0.;   ///< NormScales::noise over the largest one: beyond 1, round-off limits what is known
   };
