@@ -90,6 +90,7 @@ namespace Nodus
           journal.console.line("warning: " + untied);
         states.committed = states.now;
       }
+      results.find_points();
       folder.emplace(parameters.output.results_folder, model.communicator);
       if (!restart)
         checkpointing.set_aside();
@@ -197,6 +198,7 @@ namespace Nodus
   {
     for (const std::string &line : model.summary())
       journal.console.line(line);
+    results.find_points();
     Nodus::validate(model, states, path.at_hand(), journal.console);
   }
 
