@@ -14,7 +14,7 @@
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <array>
-#include <cmath>
+#include <filesystem>
 #include <map>
 #include <unordered_map>
 
@@ -149,7 +149,9 @@ namespace Nodus
     }
     else
     {
-      const NodalStress values(dof_handler, mapping, solid, u, true);
+      const bool with_strains =
+          is_chosen(parameters.fields, "green_lagrange_strain") || is_chosen(parameters.fields, "logarithmic_strain");
+      const NodalStress values(dof_handler, mapping, solid, u, with_strains);
       add_cells(u, grid, true, [&](const auto &, unsigned int, const auto &node) { add(values.at(node[0])); });
     }
   }
@@ -274,10 +276,16 @@ namespace Nodus
 
   void VtuOutput::continue_from(const Series &series)
   {
-    implementation_->written = series;
+    // those that a run in between has removed are left out
+    Series there;
+    for (const auto &[name, files] : series)
+      for (const auto &file : files)
+        if (std::filesystem::exists(std::filesystem::path(implementation_->parameters.results_folder) / file.second))
+          there[name].push_back(file);
+    implementation_->written = Utilities::MPI::broadcast(implementation_->communicator, there);
     std::string problem;
     if (implementation_->rank == 0)
-      for (const auto &one : series)
+      for (const auto &one : implementation_->written)
         if (problem.empty())
           problem = implementation_->write_record(one.first);
     throw_everywhere<InputError>(problem, implementation_->communicator);

@@ -114,7 +114,7 @@ namespace Nodus
   {
     // any number of a body, condition or pair, and blanks around '/' as in the titles of the reference
     std::string words = std::regex_replace(lower_case(dealii::Utilities::trim(wanted)), std::regex("\\s*/\\s*"), "/");
-    words             = std::regex_replace(words, std::regex("(body|condition|pair|point|line) ([0-9]+|<n>)(?=/|$)"), "$1 1");
+    words = std::regex_replace(words, std::regex("(body|condition|pair|point|line) ([0-9]+|<n>)(?=/|$)"), "$1 1");
 
     std::string text;
     // What is meant is a part of a path or of a choice, or else words of a path in any order, or else of a meaning.

@@ -93,7 +93,11 @@ namespace Nodus
       results.find_points();
       folder.emplace(parameters.output.results_folder, model.communicator);
       if (!restart)
+      {
         checkpointing.set_aside();
+        if (const unsigned int n = folder->remove_results(); n > 0)
+          journal.console.line("Files of an earlier run are removed: " + std::to_string(n));
+      }
       results.begin_on_mesh();
       journal.tables = std::make_unique<Tables>(parameters.output.results_folder, model.communicator);
       journal.diagnosis.begin_run();

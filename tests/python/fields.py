@@ -200,6 +200,28 @@ def test_points():
     check("results of what is refused", os.path.exists("results/refused"), False)
 
 
+def test_folder_again():
+    """A run that begins anew in a folder leaves nothing of the one before but its checkpoints, with which that one continues; files
+    of others stay."""
+    F = HOMOGENEOUS[0][1]
+    case = cube(F, **{"Checkpoint interval": 1})
+    case.run("results/again", 2, profile=True)
+    with open("results/again/bodies_notes.vtu", "w", encoding="utf-8") as file:
+        file.write("mine")
+    short = cube(F, **{"Checkpoint interval": 1})
+    short["Load stepping/Increments"] = 1
+    done = short.run("results/again")
+    check("files", sorted(os.listdir("results/again")),
+          ["bodies.pvd", "bodies_0000.vtu", "bodies_0001.vtu", "bodies_notes.vtu", "checkpoints", "checkpoints.before", "contact.csv",
+           "convergence.csv", "energy.csv", "log", "reactions.csv"])  # fmt: skip
+    check("told", "Files of an earlier run are removed: 18" in done.log, True)
+    os.rename("results/again/checkpoints", "results/again/other")
+    os.rename("results/again/checkpoints.before", "results/again/checkpoints")
+    after = case.run("results/again", restart=True)
+    check("times of the fields that are there", [os.path.exists(file) for file in after.series("bodies").values()], [True] * len(after.series("bodies")))
+    check("increments of the first run", after.reactions["increment"].tolist(), [1., 2., 3.])
+
+
 EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
 FACES = [(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7)]
 
@@ -266,4 +288,5 @@ def with_vtk(raw, F):
     below("VTK, warped and deformed", np.abs(points["undeformed"] - points["deformed"]).max(), 1e-6)
 
 
-run(test_strains, test_principal_stresses, test_jump, test_contact, test_choice, test_configurations, test_points)
+run(test_strains, test_principal_stresses, test_jump, test_contact, test_choice, test_configurations, test_points,
+    test_folder_again)
