@@ -95,6 +95,11 @@ def test_jump():
         stress = mesh.field("cauchy_stress xx")
         below(f"{nodal}, between the cells", error(np.sort(stress[np.abs(mesh.reference[:, 0] - 1) < 1e-6]), np.array(between)), 1e-6)
         below(f"{nodal}, at the left end", error(stress[mesh.reference[:, 0] < 0.5], 100. * np.ones(4)), 1e-6)
+    bent = bar(1)  # a stress of 0.1 E y, linear in each cell
+    bent["Output/Nodal values"] = "by cell"
+    mesh = bent.run("results/bent").bodies()
+    own = mesh.field("body") == 1
+    below("by cell, linear stress", error(mesh.field("cauchy_stress xx")[own], 0.1 * E * mesh.reference[own, 1]), 1e-6)
 
 
 def patch(**output):
