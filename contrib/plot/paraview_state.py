@@ -6,9 +6,10 @@ From a shell:  NODUS_RESULTS=results/hertz paraview --script=contrib/plot/paravi
 A picture:     pvpython contrib/plot/paraview_state.py results/hertz picture.png
 
 Bodies and contact surface lie side by side in two views that share the time. Other fields are in the list of the colour
-bar: COPEN, CSTATUS (0 open, 1 slip, 2 stick), CSHEAR1, CSHEAR2, CSLIP1, CSLIP2, displacement, cauchy_stress.
+bar: COPEN, CSTATUS (0 open, 1 slip, 2 stick), CSHEAR1, CSHEAR2, CSLIP1, CSLIP2, displacement, cauchy_stress, and what Output/Fields names.
 """
 
+import glob
 import os
 import sys
 
@@ -25,6 +26,7 @@ from paraview.simple import (
     SetActiveView,
     Show,
     Text,
+    WarpByVector,
 )
 
 
@@ -33,6 +35,16 @@ def results_folder():
     if not os.path.exists(os.path.join(folder, "bodies.pvd")):
         sys.exit(f"paraview_state: there is no bodies.pvd in {folder}; set NODUS_RESULTS to a results folder")
     return os.path.abspath(folder)
+
+
+def read(folder, name):
+    """What the .pvd refers to, warped by the displacement where the points are not those of the deformed configuration."""
+    reader = PVDReader(registrationName=name, FileName=os.path.join(folder, name + ".pvd"))
+    with open(glob.glob(os.path.join(folder, name + "_*.vtu"))[0], encoding="utf-8") as file:
+        head = file.read(1000)
+    if '>1<' in head[head.index('Name="deformed"'):].split("\n", 1)[0]:
+        return reader
+    return WarpByVector(registrationName=name + ", deformed", Input=reader, Vectors=["POINTS", "displacement"], ScaleFactor=1)
 
 
 def show(reader, view, field, title, preset, edges):
@@ -72,7 +84,7 @@ def label(view, text):
 
 def main():
     folder = results_folder()
-    bodies = PVDReader(registrationName="bodies", FileName=os.path.join(folder, "bodies.pvd"))
+    bodies = read(folder, "bodies")
     with_contact = os.path.exists(os.path.join(folder, "contact.pvd"))
 
     layout = CreateLayout("nodus")
@@ -80,7 +92,7 @@ def main():
     layout.AssignView(0, left)
     views = [left]
     if with_contact:
-        contact = PVDReader(registrationName="contact", FileName=os.path.join(folder, "contact.pvd"))
+        contact = read(folder, "contact")
         right = new_view([0.0, 0.0, -1.0], [0, 1, 0])
         layout.SplitHorizontal(0, 0.5)
         layout.AssignView(2, right)

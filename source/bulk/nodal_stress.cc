@@ -1,10 +1,14 @@
 #include "bulk/nodal_stress.h"
+#include "bulk/strain.h"
 #include "mesh/hanging_nodes.h"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_dgq.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/affine_constraints.h>
+
+#include <array>
 
 namespace Nodus
 {
@@ -12,16 +16,31 @@ namespace Nodus
 
   namespace
   {
-    /// Where the six components of a symmetric tensor live in two vectors of three components per node. A third vector
+    /// Where the six components of a symmetric tensor live in two vectors of three components per node. The last vector
     /// has the equivalent plastic strain in its first component.
-    constexpr unsigned int stress_row[2][dim]    = {{0, 1, 2}, {1, 0, 0}};
-    constexpr unsigned int stress_column[2][dim] = {{0, 1, 2}, {2, 2, 1}};
+    constexpr unsigned int tensor_row[2][dim]    = {{0, 1, 2}, {1, 0, 0}};
+    constexpr unsigned int tensor_column[2][dim] = {{0, 1, 2}, {2, 2, 1}};
+
+    using Tensors = std::array<SymmetricTensor<2, dim>, 3>; // stress, strains in the order of StressAndStrain
+
+    Tensors tensors_of(const SolidAssembler::PointResult &point, const bool with_strains)
+    {
+      Tensors tensors = {{point.cauchy_stress}};
+      if (with_strains)
+      {
+        tensors[1] = green_lagrange_strain(point.deformation_gradient);
+        tensors[2] = logarithmic_strain(point.deformation_gradient);
+      }
+      return tensors;
+    }
   } // namespace
 
   NodalStress::NodalStress(const DoFHandler<dim> &dof_handler,
                            const Mapping<dim>    &mapping,
                            const SolidAssembler  &solid,
-                           const Vector          &u)
+                           const Vector          &u,
+                           const bool             with_strains)
+      : n_tensors_(with_strains ? 3 : 1)
   {
     const auto       &fe    = dof_handler.get_fe();
     const auto       &owned = dof_handler.locally_owned_dofs();
@@ -32,7 +51,7 @@ namespace Nodus
     const AffineConstraints<double> hanging_nodes = hanging_constraints(dof_handler);
 
     Vector mass = sums_over_cells(dof_handler, hanging_nodes);
-    values_.assign(plastic ? 3 : 2, mass);
+    values_.assign(2 * n_tensors_ + (plastic ? 1 : 0), mass);
 
     const unsigned int                  n_dofs = fe.n_dofs_per_cell();
     std::vector<DoFIndex>               dofs(n_dofs);
@@ -48,16 +67,19 @@ namespace Nodus
             v.reinit(n_dofs);
           cell_mass = 0.;
           for (unsigned int q = 0; q < points.size(); ++q)
+          {
+            const Tensors tensors = tensors_of(points[q], with_strains);
             for (unsigned int i = 0; i < n_dofs; ++i)
             {
               const unsigned int c      = fe.system_to_component_index(i).first;
               const double       weight = fe_values.shape_value(i, q) * points[q].JxW;
               cell_mass[i] += weight;
-              for (unsigned int part = 0; part < 2; ++part)
-                cell_values[part][i] += weight * points[q].cauchy_stress[stress_row[part][c]][stress_column[part][c]];
+              for (unsigned int part = 0; part < 2 * n_tensors_; ++part)
+                cell_values[part][i] += weight * tensors[part / 2][tensor_row[part % 2][c]][tensor_column[part % 2][c]];
               if (plastic && c == 0)
-                cell_values[2][i] += weight * points[q].equivalent_plastic_strain;
+                cell_values.back()[i] += weight * points[q].equivalent_plastic_strain;
             }
+          }
           cell->get_dof_indices(dofs);
           hanging_nodes.distribute_local_to_global(cell_mass, dofs, mass);
           for (unsigned int part = 0; part < values_.size(); ++part)
@@ -65,23 +87,64 @@ namespace Nodus
         });
 
     mass.compress(VectorOperation::add);
-    for (unsigned int part = 0; part < values_.size(); ++part)
+    for (Vector &values : values_)
     {
-      values_[part].compress(VectorOperation::add);
+      values.compress(VectorOperation::add);
       for (const auto i : owned)
         if (!hanging_nodes.is_constrained(i))
-          values_[part](i) /= mass(i);
-      hanging_nodes.distribute(values_[part]);
-      values_[part].update_ghost_values();
+          values(i) /= mass(i);
+      hanging_nodes.distribute(values);
+      values.update_ghost_values();
     }
   }
 
-  SymmetricTensor<2, dim> NodalStress::stress(const DoFIndex first_dof) const
+  SymmetricTensor<2, dim> NodalStress::tensor(const unsigned int number, const DoFIndex first_dof) const
   {
-    SymmetricTensor<2, dim> sigma;
+    SymmetricTensor<2, dim> tensor;
     for (unsigned int c = 0; c < dim; ++c)
       for (unsigned int part = 0; part < 2; ++part)
-        sigma[stress_row[part][c]][stress_column[part][c]] = values_[part](first_dof + c);
-    return sigma;
+        tensor[tensor_row[part][c]][tensor_column[part][c]] = values_[2 * number + part](first_dof + c);
+    return tensor;
+  }
+
+  StressAndStrain NodalStress::at(const DoFIndex first_dof) const
+  {
+    StressAndStrain values;
+    values.cauchy_stress = tensor(0, first_dof);
+    if (n_tensors_ > 1)
+    {
+      values.green_lagrange_strain = tensor(1, first_dof);
+      values.logarithmic_strain    = tensor(2, first_dof);
+    }
+    if (values_.size() > 2 * n_tensors_)
+      values.equivalent_plastic_strain = values_.back()(first_dof);
+    return values;
+  }
+
+  CellStress::CellStress(const DoFHandler<dim> &dof_handler, const SolidAssembler &solid, const Vector &u)
+  {
+    const unsigned int                    degree = dof_handler.get_fe().degree;
+    const FE_DGQArbitraryNodes<dim>       through_points(QGauss<1>(degree + 1)); // shape function q is 1 at point q
+    const std::vector<dealii::Point<dim>> nodes = FE_DGQ<dim>(degree).get_unit_support_points(); // lexicographic
+    n_nodes_                                    = nodes.size();
+    values_.resize(dof_handler.get_triangulation().n_active_cells() * n_nodes_);
+    solid.visit(
+        u,
+        [&](const DoFHandler<dim>::active_cell_iterator &cell, const std::vector<SolidAssembler::PointResult> &points)
+        {
+          for (unsigned int q = 0; q < points.size(); ++q)
+          {
+            const Tensors tensors = tensors_of(points[q], true);
+            for (unsigned int j = 0; j < n_nodes_; ++j)
+            {
+              StressAndStrain &values = values_[cell->active_cell_index() * n_nodes_ + j];
+              const double     share  = through_points.shape_value(q, nodes[j]);
+              values.cauchy_stress += share * tensors[0];
+              values.green_lagrange_strain += share * tensors[1];
+              values.logarithmic_strain += share * tensors[2];
+              values.equivalent_plastic_strain += share * points[q].equivalent_plastic_strain;
+            }
+          }
+        });
   }
 } // namespace Nodus

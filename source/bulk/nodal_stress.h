@@ -9,14 +9,22 @@
 #include <deal.II/fe/mapping.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
-#include <array>
 #include <vector>
 
 namespace Nodus
 {
-  /// Cauchy stress [pressure] and equivalent plastic strain at the displacement nodes: lumped-mass L2 projection, that
-  /// is the average of the integration points weighted with the shape functions. The bodies share no nodes, so nothing
-  /// is smeared from one body into the other.
+  /// What a body has at a place besides its displacement. Strains are those of the deformation that the law sees.
+  struct StressAndStrain
+  {
+    dealii::SymmetricTensor<2, dim> cauchy_stress;         ///< [pressure]
+    dealii::SymmetricTensor<2, dim> green_lagrange_strain; ///< [-]
+    dealii::SymmetricTensor<2, dim> logarithmic_strain;    ///< ln V [-]
+    double                          equivalent_plastic_strain = 0.;
+  };
+
+  /// Cauchy stress [pressure], strains if wanted, and equivalent plastic strain at the displacement nodes: lumped-mass
+  /// L2 projection, that is the average of the integration points weighted with the shape functions. The bodies share
+  /// no nodes, so nothing is smeared from one body into the other.
   class NodalStress
   {
   public:
@@ -24,21 +32,41 @@ namespace Nodus
     NodalStress(const dealii::DoFHandler<dim> &dof_handler,
                 const dealii::Mapping<dim>    &mapping,
                 const SolidAssembler          &solid,
-                const Vector                  &u);
+                const Vector                  &u,
+                bool                           with_strains = false);
 
     /// At the node of a locally relevant degree of freedom, the first of its three.
-    dealii::SymmetricTensor<2, dim> stress(DoFIndex first_dof) const;
-    bool                            has_plastic_strain() const
+    dealii::SymmetricTensor<2, dim> stress(const DoFIndex first_dof) const
     {
-      return values_.size() > 2;
+      return tensor(0, first_dof);
     }
-    double plastic_strain(const DoFIndex first_dof) const
+    /// Likewise; zero what was not wanted.
+    StressAndStrain at(DoFIndex first_dof) const;
+
+  private:
+    dealii::SymmetricTensor<2, dim> tensor(unsigned int number, DoFIndex first_dof) const;
+
+    unsigned int        n_tensors_;
+    std::vector<Vector> values_; ///< with ghost entries; three numbers of a node in the places of its displacement
+  };
+
+  /// The same of each cell alone, where cells differ in what they have at a node that they share: the polynomial
+  /// through the integration points of the cell.
+  class CellStress
+  {
+  public:
+    /// @p u has ghost entries.
+    CellStress(const dealii::DoFHandler<dim> &dof_handler, const SolidAssembler &solid, const Vector &u);
+
+    /// At node @p j, lexicographic, of a locally owned cell.
+    const StressAndStrain &at(const unsigned int active_cell_index, const unsigned int j) const
     {
-      return values_[2](first_dof);
+      return values_[active_cell_index * n_nodes_ + j];
     }
 
   private:
-    std::vector<Vector> values_; ///< with ghost entries; three numbers of a node in the places of its displacement
+    unsigned int                 n_nodes_;
+    std::vector<StressAndStrain> values_;
   };
 } // namespace Nodus
 

@@ -26,12 +26,14 @@ namespace Nodus
     cycle_period.push_back(other.cycle_period[i]);
     contradiction.push_back(other.contradiction[i]);
     number.push_back(other.number[i]);
+    node.push_back(other.node[i]);
   }
 
   void ContactFields::interpolate(const std::vector<std::pair<unsigned int, double>> &others,
                                   const Point                                        &X_hanging,
                                   const Vector3                                      &u,
-                                  const DoFIndex                                      number_hanging)
+                                  const DoFIndex                                      number_hanging,
+                                  const DoFIndex                                      node_hanging)
   {
     const auto mean = [&](auto &values)
     {
@@ -56,5 +58,6 @@ namespace Nodus
     cycle_period.push_back(0);
     contradiction.push_back(0);
     number.push_back(number_hanging);
+    node.push_back(node_hanging);
   }
 } // namespace Nodus

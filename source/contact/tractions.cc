@@ -169,6 +169,7 @@ namespace Nodus
       fields.cycle_period.push_back(result.ledger.period);
       fields.contradiction.push_back(static_cast<char>(result.ledger.last));
       fields.number.push_back(surfaces.multiplier(k));
+      fields.node.push_back(surfaces.nodes()[slave.node].dofs[0] / dim);
     }
 
     /// Adds node @p n of a face, which hangs, to the fields, with what the slave nodes that it follows give it.
@@ -184,10 +185,11 @@ namespace Nodus
       for (unsigned int j = 0; j < face.slaves.size(); ++j)
         if (const double share = face.basis[n * face.slaves.size() + j]; share != 0.)
           shares.emplace_back(place_of_slave[face.slaves[j]], share);
-      const unsigned int node  = face.nodes[n];
-      const SurfaceNode &hung  = surfaces.nodes()[node];
-      const unsigned int place = fields.X.size();
-      fields.interpolate(shares, hung.X, x[node] - hung.X, surfaces.layout().n_slave_nodes + hung.dofs[0] / dim);
+      const unsigned int node   = face.nodes[n];
+      const SurfaceNode &hung   = surfaces.nodes()[node];
+      const unsigned int place  = fields.X.size();
+      const DoFIndex     number = hung.dofs[0] / dim;
+      fields.interpolate(shares, hung.X, x[node] - hung.X, surfaces.layout().n_slave_nodes + number, number);
       return place;
     }
 

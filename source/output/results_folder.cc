@@ -6,13 +6,24 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sys/file.h>
 #include <system_error>
 #include <unistd.h>
+#include <vector>
 
 namespace Nodus
 {
+  namespace
+  {
+    /// Fields, tables and profile as their writers name them; Diagnosis removes its own files.
+    const std::regex results("(bodies|contact)(_[0-9]+([.][0-9]+)?[.]p?vtu|[.]pvd)|"
+                             "(contact|reactions|rigid_bodies|points|lines|energy|convergence)[.]csv|profile[.]json");
+  } // namespace
+
   ResultsFolder::ResultsFolder(const std::string &path, const MPI_Comm communicator)
+      : path_(path)
+      , communicator_(communicator)
   {
     std::string problem;
     if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
@@ -25,6 +36,22 @@ namespace Nodus
   {
     if (lock_ >= 0)
       close(lock_);
+  }
+
+  unsigned int ResultsFolder::remove_results() const
+  {
+    unsigned int n = 0;
+    if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
+    {
+      std::error_code                    ignored;
+      std::vector<std::filesystem::path> found;
+      for (const auto &entry : std::filesystem::directory_iterator(path_, ignored))
+        if (entry.is_regular_file(ignored) && std::regex_match(entry.path().filename().string(), results))
+          found.push_back(entry.path());
+      for (const auto &file : found)
+        n += std::filesystem::remove(file, ignored);
+    }
+    return dealii::Utilities::MPI::broadcast(communicator_, n);
   }
 
   /// @returns what is in the way.

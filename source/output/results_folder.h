@@ -17,13 +17,19 @@ namespace Nodus
     ResultsFolder(const std::string &path, MPI_Comm communicator);
     ~ResultsFolder();
 
+    /// Removes what an earlier run has written, but for checkpoints; other files stay. Collective. @returns how many
+    /// files.
+    unsigned int remove_results() const;
+
     ResultsFolder(const ResultsFolder &)            = delete;
     ResultsFolder &operator=(const ResultsFolder &) = delete;
 
   private:
     std::string take(const std::string &path);
 
-    int lock_ = -1; ///< descriptor of the folder, on rank 0; < 0: none
+    std::string path_;
+    MPI_Comm    communicator_;
+    int         lock_ = -1; ///< descriptor of the folder, on rank 0; < 0: none
   };
 } // namespace Nodus
 

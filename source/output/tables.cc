@@ -37,6 +37,12 @@ namespace Nodus
                                    "stored energy [energy],frictional dissipation [energy],"
                                    "plastic dissipation [energy],stabilisation [energy],imbalance [energy]\n";
 
+    const std::string point_columns = "displacement x [length],displacement y [length],displacement z [length],"
+                                      "stress xx [pressure],stress yy [pressure],stress zz [pressure],"
+                                      "stress xy [pressure],stress xz [pressure],stress yz [pressure]\n";
+    const std::string point_header  = "increment,time,point," + point_columns;
+    const std::string line_header   = "increment,time,line,distance [length]," + point_columns;
+
     /// Imbalances below this part of the energies are round-off.
     constexpr double round_off = 1e-13;
 
@@ -64,12 +70,20 @@ namespace Nodus
       for (unsigned int d = 0; d < dim; ++d)
         out << ',' << v[d];
     }
+
+    void print(std::ostream &out, const Tables::PointRow &point)
+    {
+      print(out, point.displacement);
+      for (unsigned int i = 0; i < dealii::SymmetricTensor<2, dim>::n_independent_components; ++i)
+        out << ',' << point.cauchy_stress.access_raw_entry(i);
+      out << '\n';
+    }
   } // namespace
 
   Tables::Tables(const std::string &folder, MPI_Comm communicator)
       : folder_(folder)
       , communicator_(communicator)
-      , rows_{contact_header, reaction_header, energy_header, iteration_header, ""}
+      , rows_{contact_header, reaction_header, energy_header, iteration_header, "", "", ""}
   {
     for (const char *name : remedy_names)
       rows_.contact += ',' + std::string(name);
@@ -140,6 +154,32 @@ namespace Nodus
     write();
   }
 
+  void Tables::add_points(const unsigned int increment, const double t, const std::vector<PointRow> &points)
+  {
+    auto rows = row();
+    for (const PointRow &point : points)
+    {
+      rows << increment << ',' << t << ',' << quoted(point.name);
+      print(rows, point);
+    }
+    if (rows_.points.empty() && !points.empty())
+      rows_.points = point_header;
+    rows_.points += rows.str();
+  }
+
+  void Tables::add_lines(const unsigned int increment, const double t, const std::vector<PointRow> &points)
+  {
+    auto rows = row();
+    for (const PointRow &point : points)
+    {
+      rows << increment << ',' << t << ',' << quoted(point.name) << ',' << point.distance;
+      print(rows, point);
+    }
+    if (rows_.lines.empty() && !points.empty())
+      rows_.lines = line_header;
+    rows_.lines += rows.str();
+  }
+
   void Tables::continue_from(const Rows &rows)
   {
     rows_ = rows;
@@ -151,6 +191,8 @@ namespace Nodus
     for (const auto &[name, rows] : {std::pair<const char *, const std::string *>{"contact.csv", &rows_.contact},
                                      {"reactions.csv", &rows_.reactions},
                                      {"rigid_bodies.csv", &rows_.rigid_bodies},
+                                     {"points.csv", &rows_.points},
+                                     {"lines.csv", &rows_.lines},
                                      {"energy.csv", &rows_.energies},
                                      {"convergence.csv", &rows_.iterations}})
       if (!rows->empty())

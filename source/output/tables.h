@@ -7,6 +7,8 @@
 #include <nodus/base/types.h>
 #include <nodus/contact/contact_fields.h>
 
+#include <deal.II/base/symmetric_tensor.h>
+
 #include <mpi.h>
 
 #include <string>
@@ -16,8 +18,8 @@ namespace Nodus
 {
   /// contact.csv (one row per increment and pair), reactions.csv (one row per increment and displacement condition),
   /// rigid_bodies.csv (one row per increment and rigid body with free components, if there are any), energy.csv (one
-  /// row per increment) and convergence.csv (one row per Newton iteration), rewritten as a whole after each increment
-  /// (temporary name, then rename) by rank 0.
+  /// row per increment), points.csv and lines.csv (one row per point that is asked for) and convergence.csv (one row
+  /// per Newton iteration), rewritten as a whole after each increment (temporary name, then rename) by rank 0.
   class Tables
   {
   public:
@@ -29,6 +31,18 @@ namespace Nodus
       std::string name;
       Vector3     force; ///< of the ground on the bodies
     };
+
+    /// What a body has at a point.
+    struct PointRow
+    {
+      std::string                     name;     ///< of the point or line
+      double                          distance; ///< along the line [length]
+      Vector3                         displacement;
+      dealii::SymmetricTensor<2, dim> cauchy_stress;
+    };
+    /// Rows of points.csv or lines.csv, which the next add() writes. Global values, the same on every rank.
+    void add_points(unsigned int increment, double t, const std::vector<PointRow> &points);
+    void add_lines(unsigned int increment, double t, const std::vector<PointRow> &points);
 
     /// All arguments are global values, the same on every rank. Collective. @throws InputError as the constructor.
     void add(unsigned int                          increment,
@@ -60,7 +74,7 @@ namespace Nodus
     struct Rows
     {
       std::string contact, reactions, energies, iterations; ///< with the headers
-      std::string rigid_bodies;                             ///< likewise, empty without any
+      std::string rigid_bodies, points, lines;              ///< likewise, empty without any
     };
     const Rows &rows() const
     {

@@ -5,6 +5,7 @@
 #include "mesh/bodies.h"
 #include <nodus/base/types.h>
 #include <nodus/contact/contact_fields.h>
+#include <nodus/parameters/solution_parameters.h>
 
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/mapping.h>
@@ -19,13 +20,13 @@
 namespace Nodus
 {
   /// Writes the bodies (bodies.pvd, bodies_0001.pvtu, ...) and the slave contact surfaces (contact.pvd, ...) of each
-  /// written increment on the deformed configuration. Files appear complete or not at all (temporary name, then
-  /// rename).
+  /// written increment, on the configuration and with the fields that were chosen. Files appear complete or not at all
+  /// (temporary name, then rename).
   class VtuOutput
   {
   public:
     /// @p by_increment: the series go by the number of the increment, where time goes back.
-    VtuOutput(const std::string             &folder,
+    VtuOutput(const OutputParameters        &parameters,
               const Bodies                  &bodies,
               const dealii::DoFHandler<dim> &dof_handler,
               const dealii::Mapping<dim>    &mapping,

@@ -59,6 +59,20 @@ namespace Nodus
         else
           collect(node, join(section, name), keys);
     }
+
+    /// What to give instead of @p value, and what its first entry that is none of the choices was meant to be.
+    std::string advice(const ValuePattern &pattern, const std::string &value)
+    {
+      const bool  is_list = pattern.kind == ValuePattern::Kind::list;
+      const auto &choices = is_list ? pattern.entries.front().choices : pattern.choices;
+      const auto  items =
+          is_list ? dealii::Utilities::split_string_list(value, pattern.separator) : std::vector<std::string>{value};
+      for (const std::string &item : items)
+        if (std::find(choices.begin(), choices.end(), item) == choices.end())
+          if (const auto near = nearest(item, choices); !near.empty())
+            return "give " + pattern.in_words() + did_you_mean(near);
+      return "give " + pattern.in_words();
+    }
   } // namespace
 
   std::string DeclaredKey::unit() const
@@ -234,7 +248,8 @@ namespace Nodus
         if (std::find(names.begin(), names.end(), name) == names.end())
         {
           if (known.empty())
-            for (const char *const first : {"Body 1", "Boundary condition 1", "Contact pair 1"})
+            for (const char *const first :
+                 {"Body 1", "Boundary condition 1", "Contact pair 1", "Output point 1", "Output line 1"})
               if (std::find(names.begin(), names.end(), first) == names.end())
                 names.push_back(first); // the file may mean to have one
           throw InputError(origin + ": unknown subsection '" + name + "' " + in_section(known) +
@@ -283,7 +298,7 @@ namespace Nodus
       }
       catch (const dealii::ExceptionBase &)
       {
-        refuse(entry.section, entry.key, "is '" + value + "'; give " + found->pattern.in_words());
+        refuse(entry.section, entry.key, "is '" + value + "'; " + advice(found->pattern, value));
       }
       for (unsigned int i = 0; i < path.size(); ++i)
         prm.leave_subsection();

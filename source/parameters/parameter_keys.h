@@ -93,6 +93,9 @@ namespace Nodus
     void add_contact_pair(ParameterHandler &prm, ContactPairParameters &pair);
     /// What its surfaces do once closed, how they give way, and how they rub.
     void add_contact_laws(ParameterHandler &prm, ContactPairParameters &pair);
+    void add_output(ParameterHandler &prm, OutputParameters &output);
+    void add_output_point(ParameterHandler &prm, OutputPointParameters &point);
+    void add_output_line(ParameterHandler &prm, OutputLineParameters &line);
     /// The subsections on how the case is solved, from "Geometry loop" to "Adaptivity".
     void add_solution(ParameterHandler &prm, Parameters &parameters);
   } // namespace ParameterKeys

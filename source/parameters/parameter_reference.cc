@@ -114,7 +114,7 @@ namespace Nodus
   {
     // any number of a body, condition or pair, and blanks around '/' as in the titles of the reference
     std::string words = std::regex_replace(lower_case(dealii::Utilities::trim(wanted)), std::regex("\\s*/\\s*"), "/");
-    words             = std::regex_replace(words, std::regex("(body|condition|pair) ([0-9]+|<n>)(?=/|$)"), "$1 1");
+    words = std::regex_replace(words, std::regex("(body|condition|pair|point|line) ([0-9]+|<n>)(?=/|$)"), "$1 1");
 
     std::string text;
     // What is meant is a part of a path or of a choice, or else words of a path in any order, or else of a meaning.
@@ -144,9 +144,9 @@ namespace Nodus
 Written by `nodus --document`; edit the descriptions in source/parameters*.cc.
 
 A case is a text file. `set Key = value` sets a key, `subsection Name` ... `end` enclose the keys of a section, `#`
-starts a comment and a `\` at the end of a line continues it. Bodies, boundary conditions and contact pairs are
-numbered 1, 2, 3, ... without gaps. Unknown keys, keys set twice and values out of range are refused. On the command
-line `--set "Section/Key=value"` replaces a value of the file, for example
+starts a comment and a `\` at the end of a line continues it. Bodies, boundary conditions, contact pairs, output
+points and output lines are numbered 1, 2, 3, ... without gaps. Unknown keys, keys set twice and values out of range are
+refused. On the command line `--set "Section/Key=value"` replaces a value of the file, for example
 `--set "Body 1/Material/Poisson's ratio=0.4"`, and `nodus --explain "friction"` prints what is said here about all keys
 with that word in their path or among their choices, or else in their meaning.
 

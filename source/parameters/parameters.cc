@@ -187,25 +187,17 @@ namespace Nodus
 
     void add(ParameterHandler &prm, OutputParameters &output)
     {
-      prm.add_parameter("Results folder",
-                        output.results_folder,
-                        "Folder of all results [-], relative to the working folder; empty: results/<name of the .prm "
-                        "file>.",
-                        Patterns::Anything());
-      prm.add_parameter("Write VTU",
-                        output.write_vtu,
-                        "Whether fields are written [-]; false leaves the tables (a series of runs, measuring time).");
-      prm.add_parameter(
-          "VTU interval",
-          output.vtu_interval,
-          "Increments between two files of the fields [-], the first of which has the initial state; 0: the last "
-          "increment only.",
-          count);
-      prm.add_parameter("Checkpoint interval",
-                        output.checkpoint_interval,
-                        "Increments between two checkpoints, from which --restart continues [-]; 0: only where a "
-                        "signal asks for one (SIGUSR1, SIGTERM, SIGINT).",
-                        count);
+      add_output(prm, output);
+    }
+
+    void add(ParameterHandler &prm, OutputPointParameters &point)
+    {
+      add_output_point(prm, point);
+    }
+
+    void add(ParameterHandler &prm, OutputLineParameters &line)
+    {
+      add_output_line(prm, line);
     }
 
     template <typename Struct>
@@ -241,6 +233,8 @@ namespace Nodus
     add_numbered(prm, "Contact pair", contact_pairs);
     add_solution(prm, *this);
     add_subsection(prm, "Output", output);
+    add_numbered(prm, "Output point", output_points);
+    add_numbered(prm, "Output line", output_lines);
   }
 
   std::string text_of(const BoundaryConditionParameters::Type type)
@@ -254,6 +248,8 @@ namespace Nodus
     parameters.bodies.resize(1);
     parameters.boundary_conditions.resize(1);
     parameters.contact_pairs.resize(1);
+    parameters.output_points.resize(1);
+    parameters.output_lines.resize(1);
     ParameterHandler prm;
     parameters.add_parameters(prm);
     return declared_keys(prm);
@@ -321,6 +317,8 @@ namespace Nodus
     parameters.bodies.resize(text.count("Body"));
     parameters.boundary_conditions.resize(text.count("Boundary condition"));
     parameters.contact_pairs.resize(text.count("Contact pair"));
+    parameters.output_points.resize(text.count("Output point"));
+    parameters.output_lines.resize(text.count("Output line"));
 
     ParameterHandler prm; // holds references to the members of parameters
     parameters.add_parameters(prm);
@@ -342,6 +340,12 @@ namespace Nodus
     for (unsigned int p = 0; p < parameters.contact_pairs.size(); ++p)
       if (parameters.contact_pairs[p].name.empty())
         parameters.contact_pairs[p].name = "pair " + std::to_string(p + 1);
+    for (unsigned int i = 0; i < parameters.output_points.size(); ++i)
+      if (parameters.output_points[i].name.empty())
+        parameters.output_points[i].name = "point " + std::to_string(i + 1);
+    for (unsigned int i = 0; i < parameters.output_lines.size(); ++i)
+      if (parameters.output_lines[i].name.empty())
+        parameters.output_lines[i].name = "line " + std::to_string(i + 1);
     if (parameters.output.results_folder.empty())
       parameters.output.results_folder = (std::filesystem::path("results") / path.stem()).string();
 

@@ -274,6 +274,28 @@ namespace Nodus
               "is also the name of '" + subsection + ' ' + std::to_string(j + 1) +
                   "'; tables could not tell them apart");
     }
+
+    void check_output(const ParameterFile &file, const Parameters &p)
+    {
+      const auto check_body = [&](const Section &section, const unsigned int body)
+      {
+        section.require(body <= p.bodies.size(),
+                        "Body",
+                        "is " + std::to_string(body) + ", but there are " + std::to_string(p.bodies.size()) +
+                            " bodies; give the number of one of them");
+        section.require(p.bodies[body - 1].has_mesh(), "Body", "has no mesh; give the number of a body that has one");
+      };
+      for (unsigned int i = 0; i < p.output_points.size(); ++i)
+        check_body({file, "Output point " + std::to_string(i + 1)}, p.output_points[i].body);
+      for (unsigned int i = 0; i < p.output_lines.size(); ++i)
+      {
+        const Section section{file, "Output line " + std::to_string(i + 1)};
+        check_body(section, p.output_lines[i].body);
+        section.require(p.output_lines[i].from != p.output_lines[i].to, "To", "is where From is; give the other end");
+      }
+      check_names(file, "Output point", p.output_points);
+      check_names(file, "Output line", p.output_lines);
+    }
   } // namespace
 
   void Parameters::check(const ParameterFile &file) const
@@ -337,6 +359,7 @@ namespace Nodus
     check_names(file, "Body", bodies);
     check_names(file, "Boundary condition", boundary_conditions);
     check_names(file, "Contact pair", contact_pairs);
+    check_output(file, *this);
 
     Nodus::check({file, "Linear solver"}, linear_solver);
     Nodus::check({file, "Load stepping"}, load_stepping);

@@ -90,9 +90,14 @@ namespace Nodus
           journal.console.line("warning: " + untied);
         states.committed = states.now;
       }
+      results.find_points();
       folder.emplace(parameters.output.results_folder, model.communicator);
       if (!restart)
+      {
         checkpointing.set_aside();
+        if (const unsigned int n = folder->remove_results(); n > 0)
+          journal.console.line("Files of an earlier run are removed: " + std::to_string(n));
+      }
       results.begin_on_mesh();
       journal.tables = std::make_unique<Tables>(parameters.output.results_folder, model.communicator);
       journal.diagnosis.begin_run();
@@ -197,6 +202,7 @@ namespace Nodus
   {
     for (const std::string &line : model.summary())
       journal.console.line(line);
+    results.find_points();
     Nodus::validate(model, states, path.at_hand(), journal.console);
   }
 

@@ -16,12 +16,60 @@ namespace Nodus
   {
   }
 
+  void Results::find_points()
+  {
+    const Parameters              &parameters = model_.parameters;
+    std::vector<BodyPoints::Place> places;
+    for (unsigned int i = 0; i < parameters.output_points.size(); ++i)
+    {
+      const OutputPointParameters &point = parameters.output_points[i];
+      places.push_back(
+          {"Output point " + std::to_string(i + 1) + " ('" + point.name + "')", point.body, Point(point.position)});
+    }
+    for (unsigned int i = 0; i < parameters.output_lines.size(); ++i)
+    {
+      const OutputLineParameters &line = parameters.output_lines[i];
+      for (unsigned int k = 0; k < line.points; ++k)
+        places.push_back({"Output line " + std::to_string(i + 1) + " ('" + line.name + "')",
+                          line.body,
+                          Point(line.from + k / (line.points - 1.) * (line.to - line.from))});
+    }
+    if (!places.empty())
+      points_ = std::make_unique<BodyPoints>(model_.bodies, model_.dof_handler, *model_.mapping, places);
+  }
+
+  void Results::add_points(const Increment &increment, const bool with_lines)
+  {
+    if (!points_)
+      return;
+    const Vector                          u = model_.with_ghosts(states_.committed.unknowns.block(0));
+    const NodalStress                     stress(model_.dof_handler, *model_.mapping, *model_.solid, u);
+    const std::vector<BodyPoints::Values> values = points_->values(u, stress);
+    auto                                  value  = values.begin();
+    std::vector<Tables::PointRow>         points, lines;
+    for (const OutputPointParameters &point : model_.parameters.output_points)
+    {
+      points.push_back({point.name, 0., value->displacement, value->cauchy_stress});
+      ++value;
+    }
+    for (const OutputLineParameters &line : model_.parameters.output_lines)
+      for (unsigned int k = 0; k < line.points; ++k, ++value)
+        lines.push_back({line.name,
+                         k / (line.points - 1.) * (line.to - line.from).norm(),
+                         value->displacement,
+                         value->cauchy_stress});
+    journal_.tables->add_points(increment.number, increment.end, points);
+    if (with_lines)
+      journal_.tables->add_lines(increment.number, increment.end, lines);
+  }
+
   void Results::begin_on_mesh()
   {
+    find_points();
     if (!model_.parameters.output.write_vtu)
       return;
     const VtuOutput::Series series = vtu_ ? vtu_->series() : VtuOutput::Series();
-    vtu_                           = std::make_unique<VtuOutput>(model_.parameters.output.results_folder,
+    vtu_                           = std::make_unique<VtuOutput>(model_.parameters.output,
                                        model_.bodies,
                                        model_.dof_handler,
                                        *model_.mapping,
@@ -72,6 +120,9 @@ namespace Nodus
 
   void Results::write(const Increment &increment, const bool last)
   {
+    const unsigned int interval   = model_.parameters.output.vtu_interval;
+    const bool         with_files = last || (interval > 0 && increment.number % interval == 0);
+    add_points(increment, with_files);
     std::vector<Tables::Reaction> table;
     for (const auto &[name, force] : reactions_)
       table.push_back({name, force});
@@ -83,8 +134,7 @@ namespace Nodus
                          states_.committed.energies,
                          journal_.counts,
                          journal_.verdict);
-    const unsigned int interval = model_.parameters.output.vtu_interval;
-    if (vtu_ && (last || (interval > 0 && increment.number % interval == 0)))
+    if (with_files)
       write_state(increment.number, increment.end);
   }
 

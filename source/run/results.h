@@ -1,6 +1,7 @@
 #ifndef nodus_run_results_h
 #define nodus_run_results_h
 
+#include "output/body_points.h"
 #include "output/vtu.h"
 #include "run/equilibrium.h"
 #include <nodus/contact/contact_fields.h>
@@ -19,6 +20,8 @@ namespace Nodus
     /// All outlive it.
     Results(const Model &model, Journal &journal, const States &states, const Equilibrium &equilibrium);
 
+    /// Finds the points whose values are written in the cells of the mesh as it is. Collective. @throws InputError
+    void find_points();
     /// What is written on the mesh as it is. Collective. @throws InputError
     void begin_on_mesh();
     /// What the run starts from, as increment 0.
@@ -43,6 +46,8 @@ namespace Nodus
     }
 
   private:
+    void add_points(const Increment &increment, bool with_lines);
+
     const Model                                 &model_;
     Journal                                     &journal_;
     const States                                &states_;
@@ -53,6 +58,7 @@ namespace Nodus
     std::vector<std::pair<std::string, Vector3>> reactions_;
     std::vector<RigidBodyMotion>                 rigid_motions_;
     std::unique_ptr<VtuOutput>                   vtu_;
+    std::unique_ptr<BodyPoints>                  points_; ///< of all points, then of all lines; null without any
   };
 } // namespace Nodus
 

@@ -236,7 +236,24 @@ namespace
     print("\nresults folder", parameters.output.results_folder);
     print("Write VTU", parameters.output.write_vtu);
     print("VTU interval", parameters.output.vtu_interval);
+    print("fields", parameters.output.fields);
+    print_choice("configuration", parameters.output.configuration);
+    print_choice("nodal values", parameters.output.nodal_values);
     print("checkpoint interval", parameters.output.checkpoint_interval);
+    for (const OutputPointParameters &point : parameters.output_points)
+    {
+      print("\noutput point", point.name);
+      print("body", point.body);
+      print("position", point.position);
+    }
+    for (const OutputLineParameters &line : parameters.output_lines)
+    {
+      print("\noutput line", line.name);
+      print("body", line.body);
+      print("from", line.from);
+      print("to", line.to);
+      print("points", line.points);
+    }
   }
 
   std::string everything(const std::string &file)

@@ -33,7 +33,7 @@ using dealii::Utilities::MPI::this_mpi_process;
 
 namespace
 {
-  /// The arrays of all pieces `stem`*.vtu of deal.II, one after the other: base64 of (1, size, size, compressed size),
+  /// The arrays of all pieces `stem`*.vtu, one after the other: base64 of (1, size, size, compressed size),
   /// then base64 of the zlib data.
   class Vtu
   {
@@ -47,17 +47,13 @@ namespace
 
     std::map<std::string, std::vector<double>> values;
     std::map<std::string, unsigned int>        components;
-    std::string                                version; ///< of the file format
 
   private:
     void add_piece(const std::string &name)
     {
       std::stringstream text;
       text << std::ifstream(name).rdbuf();
-      const std::string all = text.str();
-      std::smatch       type;
-      if (std::regex_search(all, type, std::regex("<VTKFile [^>]*version=\"([0-9.]*)\"")))
-        version = type[1];
+      const std::string  all = text.str();
       const std::regex   array("<DataArray type=\"([A-Za-z0-9]*)\"([^>]*)format=\"binary\">\\s*([A-Za-z0-9+/=]*)"
                                "\\s*</DataArray>");
       const unsigned int n_points_before = values["Points"].size() / dim;
@@ -104,15 +100,12 @@ namespace
   /// Volume of the cells (VTK corner order), for second-order cells of their 27-node tensor-product geometry.
   double volume(const Vtu &vtu, const unsigned int degree)
   {
-    // corners, edges, faces, centre of a VTK Lagrange hexahedron as written to files of version 0.1, as (i, j, k) of
-    // the 3x3x3 grid; in those of version 2.2, of deal.II 9.5 and later, two edges have changed places
-    unsigned int grid[27][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2},
-                                {0, 2, 2}, {1, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2},
-                                {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1}, {0, 2, 1}, {2, 2, 1}, {0, 1, 1},
-                                {2, 1, 1}, {1, 0, 1}, {1, 2, 1}, {1, 1, 0}, {1, 1, 2}, {1, 1, 1}};
-    if (vtu.version == "2.2")
-      std::swap(grid[18], grid[19]);
-    const dealii::FE_Q<dim>   fe(degree);
+    // corners, edges, faces, centre of vtkTriQuadraticHexahedron as (i, j, k) of the 3x3x3 grid
+    const unsigned int      grid[27][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2},
+                                           {0, 2, 2}, {1, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2},
+                                           {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}, {0, 1, 1},
+                                           {2, 1, 1}, {1, 0, 1}, {1, 2, 1}, {1, 1, 0}, {1, 1, 2}, {1, 1, 1}};
+    const dealii::FE_Q<dim> fe(degree);
     const dealii::QGauss<dim> quadrature(degree + 2);
     const unsigned int        n_nodes = fe.n_dofs_per_cell();
 
@@ -193,6 +186,7 @@ namespace
         c.cycle_period.push_back(2);
         c.contradiction.push_back(1);
         c.paired.push_back(1);
+        c.node.push_back(c.node.size());
       }
     return c;
   }
@@ -250,7 +244,10 @@ namespace
     std::vector<BoundaryConditions::Load> none;
     const SolidAssembler                  solid(dof_handler, mapping, materials, none);
     const ResultsFolder                   held(folder, communicator);
-    VtuOutput                             output(folder, bodies, dof_handler, mapping, solid, false);
+    OutputParameters                      chosen;
+    chosen.results_folder = folder;
+    chosen.configuration  = OutputParameters::Configuration::deformed;
+    VtuOutput output(chosen, bodies, dof_handler, mapping, solid, false);
     output.write(1, 0.5, u, {top});
     output.write(2, 1.0, u, {top, top});
 

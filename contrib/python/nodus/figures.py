@@ -206,7 +206,7 @@ def status(results, times=None, *, whole=False):
         unused.set_axis_off()
     for one, surface, t in zip(axis.ravel(), surfaces, times):
         show_statuses(one, surface, faces, axes, window, [colour for _, colour in STATUSES])
-        # each face of the file has its own copy of a node
+        # each rank has its own copy of a node
         nodes = np.unique(surface.points, axis=0, return_index=True)[1]
         count = np.bincount(surface.fields["CSTATUS"][nodes].round().astype(int), minlength=3)
         one.set_title(f"t = {t:g}: " + ", ".join(f"{n} {name}" for n, (name, _) in zip(count, STATUSES) if n > 0),

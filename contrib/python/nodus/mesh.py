@@ -13,31 +13,26 @@ from .errors import ResultsError
 from .html import table
 from .tables import _pandas
 
-# Nodes of a VTK cell as positions in the lattice of nodes per direction, by cell type.
+# Nodes of a VTK cell as positions in the lattice of nodes per direction, by cell type: vtkQuad, vtkHexahedron,
+# vtkBiQuadraticQuad, vtkTriQuadraticHexahedron.
 _LATTICE = {
     9: "00 10 11 01",
     12: "000 100 110 010 001 101 111 011",
-    70: "00 20 22 02 10 21 12 01 11",
-    72: "000 200 220 020 002 202 222 022 100 210 120 010 102 212 122 012 001 201 021 221 011 211 101 121 110 112 111",
+    28: "00 20 22 02 10 21 12 01 11",
+    29: "000 200 220 020 002 202 222 022 100 210 120 010 102 212 122 012 001 201 221 021 011 211 101 121 110 112 111",
 }
 _LATTICE = {kind: [tuple(int(digit) for digit in node) for node in text.split()] for kind, text in _LATTICE.items()}
 _KINDS = {"Float32": np.float32, "Float64": np.float64, "Int32": np.int32, "UInt8": np.uint8}
 
 
-def _lattice(kind, version):
-    """In files of version 2.2, which deal.II 9.5 and later write, two edges of quadratic hexahedra have changed places."""
-    nodes = list(_LATTICE[kind])
-    if kind == 72 and version >= (2, 2):
-        nodes[18], nodes[19] = nodes[19], nodes[18]
-    return nodes
-
-
 class Mesh:
-    """points (n, 3) on the deformed configuration; fields: name -> (n,) or (n, 3) or (n, 9); cells: array (n_cells,
-    nodes per direction, ...) of point numbers, last index along the first local direction. Each cell has its own points."""
+    """points (n, 3) on the deformed configuration, whichever the file has; fields: name -> (n,) or (n, 3) or (n, 9); cells:
+    array (n_cells, nodes per direction, ...) of point numbers, last index along the first local direction; cell_fields:
+    name -> (n_cells,). Cells share the points of their nodes, but for those of different ranks and under `Nodal values = by
+    cell`."""
 
-    def __init__(self, points, fields, cells):
-        self.points, self.fields, self.cells = points, fields, cells
+    def __init__(self, points, fields, cells, cell_fields=None):
+        self.points, self.fields, self.cells, self.cell_fields = points, fields, cells, cell_fields or {}
 
     @property
     def reference(self):
@@ -68,8 +63,8 @@ class Mesh:
         return int(np.argmin(distance + np.zeros(len(reference))))
 
     def nodes(self, decimals=9):
-        """Numbers of one point of each node. Cells have their own points: equal are those of one body or pair at the same
-        reference position, rounded."""
+        """Numbers of one point of each node. Ranks, and cells under `Nodal values = by cell`, have their own points: equal are
+        those of one body or pair at the same reference position, rounded."""
         key = [np.round(self.reference, decimals)]
         key += [self.fields[name].round()[:, None] for name in ("body", "pair") if name in self.fields]
         return np.unique(np.concatenate(key, axis=1), axis=0, return_index=True)[1]
@@ -124,18 +119,22 @@ def _read_piece(name):
     cells = {array.get("Name"): decode(array) for array in piece.find("Cells")}
     if len(set(cells["types"])) > 1 or cells["types"][0] not in _LATTICE:
         raise ResultsError(f"{name} has cells of types {sorted(set(cells['types']))}; nodus writes one of {sorted(_LATTICE)}")
-    lattice = _lattice(int(cells["types"][0]), tuple(int(part) for part in root.get("version").split(".")))
+    lattice = _LATTICE[int(cells["types"][0])]
     n = max(lattice)[0] + 1
     connectivity = cells["connectivity"].reshape(-1, len(lattice))
     grid = np.zeros((len(connectivity),) + (n,) * len(lattice[0]), int)
     for node, position in enumerate(lattice):
         grid[(slice(None),) + position[::-1]] = connectivity[:, node]
-    fields = {}
-    for array in piece.find("PointData"):
-        values = decode(array).astype(float)
-        width = int(array.get("NumberOfComponents", 1))
-        fields[array.get("Name")] = values if width == 1 else values.reshape(-1, width)
-    return Mesh(points, fields, grid)
+    fields, cell_fields = ({array.get("Name"): _values(array) for array in piece.find(data)} for data in ("PointData", "CellData"))
+    if not any(array.get("Name") == "deformed" and int(array.text) for array in root.iter("DataArray")):
+        points = points + fields["displacement"]
+    return Mesh(points, fields, grid, cell_fields)
+
+
+def _values(array):
+    values = decode(array).astype(float)
+    width = int(array.get("NumberOfComponents", 1))
+    return values if width == 1 else values.reshape(-1, width)
 
 
 def read_mesh(name):
@@ -151,4 +150,5 @@ def read_mesh(name):
         np.concatenate([mesh.points for mesh in meshes]),
         {key: np.concatenate([mesh.fields[key] for mesh in meshes]) for key in meshes[0].fields},
         np.concatenate([mesh.cells + shift for mesh, shift in zip(meshes, before)]),
+        {key: np.concatenate([mesh.cell_fields[key] for mesh in meshes]) for key in meshes[0].cell_fields},
     )

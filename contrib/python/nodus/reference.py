@@ -128,8 +128,10 @@ class Key:
             return _checked(value, self.kind)
         except _Refused as refused:
             reason = f", {refused}" if refused.args else ""
-        if isinstance(value, str):
-            reason += _did_you_mean(value, self.choices)
+        items = value if isinstance(value, (list, tuple)) else [value]
+        for item in items:
+            if isinstance(item, str) and item not in self.choices:
+                reason += _did_you_mean(item, self.choices)
         raise InputError(f"{value!r} is no value of '{path or self.path}': give {self.allowed}{reason}")
 
     def value(self, text):
@@ -162,7 +164,7 @@ def _did_you_mean(name, names):
 
 
 class Reference:
-    """All keys by path, with `<n>` for the number of a body, boundary condition or contact pair."""
+    """All keys by path, with `<n>` for the number of a body, boundary condition, contact pair, output point or line."""
 
     def __init__(self, text):
         content = json.loads(text)

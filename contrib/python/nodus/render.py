@@ -12,7 +12,7 @@ EDGE_COLOUR = np.array([0.10, 0.10, 0.12])
 
 def boundary_faces(mesh, keep=None):
     """(n, k, k) node numbers of the faces that belong to one cell only; nodes of different cells are matched by their
-    reference position, since every cell in the file has its own."""
+    reference position, since ranks have nodes of their own."""
     cells = mesh.cells if keep is None else mesh.cells[keep]
     position = mesh.reference
     tolerance = 1e-6 * np.ptp(position, axis=0).max()

@@ -59,6 +59,16 @@ class Results:
         """convergence.csv: residuals; one row per Newton iteration, of increments that failed, too."""
         return self.table("convergence.csv")
 
+    @property
+    def points(self):
+        """points.csv: displacement and stress; one row per increment and output point."""
+        return self.table("points.csv")
+
+    @property
+    def lines(self):
+        """lines.csv: the same along output lines, as often as there are fields."""
+        return self.table("lines.csv")
+
     def series(self, name):
         """Times and files of "bodies" or "contact"."""
         path = os.path.join(self.folder, name + ".pvd")
@@ -122,7 +132,7 @@ class Results:
 
     def _repr_html_(self):
         rows = []
-        for file in ("contact.csv", "reactions.csv", "rigid_bodies.csv", "energy.csv", "convergence.csv"):
+        for file in ("contact.csv", "reactions.csv", "rigid_bodies.csv", "points.csv", "lines.csv", "energy.csv", "convergence.csv"):
             if os.path.exists(os.path.join(self.folder, file)):
                 there = self.table(file)
                 rows.append([file, f"{len(there)} rows: {', '.join(there.names[:12])}" + ", ..." * (len(there.names) > 12)])

@@ -11,7 +11,7 @@ import numpy as np
 from .errors import ResultsError
 from .html import table
 
-TEXTS = ("pair", "condition", "body")  # columns of names; all others are numbers
+TEXTS = ("pair", "condition", "body", "point", "line")  # columns of names; all others are numbers
 
 
 def nearest(times, t=None):
@@ -81,7 +81,7 @@ class Table:
         return (self[i] for i in range(len(self)))
 
     def where(self, **names):
-        """The rows of a pair, condition or body: table.where(pair="ring"). @throws ResultsError where there is none"""
+        """The rows of a pair, condition, body, point or line: table.where(pair="ring"). @throws ResultsError where there is none"""
         chosen = np.ones(len(self), bool)
         for column, wanted in names.items():
             there = self[column]
@@ -92,7 +92,7 @@ class Table:
         return self[chosen]
 
     def value(self, column, t=None, **names):
-        """A number at the last time, or at time t, of a pair, condition or body. @throws ResultsError"""
+        """A number at the last time, or at time t, of a pair, condition, body, point or line. @throws ResultsError"""
         rows = self.where(**names)
         return float(rows[column][rows["time"] == nearest(rows["time"], t)][-1])
 

@@ -40,19 +40,23 @@ namespace Nodus
     unsigned int                           degree;
     std::vector<std::vector<unsigned int>> faces;
 
+    std::vector<DoFIndex> node; ///< number of each node on the whole mesh
+
     /// Adds node @p i of @p other.
     void append(const ContactFields &other, unsigned int i);
     /// Adds a node that hangs between others, given by place and weight.
     void interpolate(const std::vector<std::pair<unsigned int, double>> &others,
                      const Point                                        &X_hanging,
                      const Vector3                                      &u,
-                     DoFIndex                                            number_hanging);
+                     DoFIndex                                            number_hanging,
+                     DoFIndex                                            node_hanging);
 
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)
     {
       archive &name &X &displacement &pressure &multiplier &gap &friction &shear[0] & shear[1] & slip[0] & slip[1] &
-          status &normal &tangent1 &area &paired &status_changes &cycle_period &contradiction &number &degree &faces;
+          status &normal &tangent1 &area &paired &status_changes &cycle_period &contradiction &number &node &degree
+              &faces;
     }
   };
 

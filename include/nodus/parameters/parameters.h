@@ -340,14 +340,15 @@ namespace Nodus
     LoadSteppingParameters                   load_stepping;
     AdaptivityParameters                     adaptivity;
     OutputParameters                         output;
+    std::vector<OutputPointParameters>       output_points;
+    std::vector<OutputLineParameters>        output_lines;
 
     /// Loads the plug-ins that @p file or @p overrides name, for explain() and documentation(). @throws InputError
     /// @returns their files
     static std::vector<std::string> load_libraries(const std::string              &file,
                                                    const std::vector<std::string> &overrides = {});
 
-    /// Strict parse of @p file after applying @p overrides ("Section/Key=value"), with load_libraries(). Throws
-    /// InputError.
+    /// Strict parse of @p file after @p overrides ("Section/Key=value"), with load_libraries(). @throws InputError
     static Parameters read(const std::string &file, const std::vector<std::string> &overrides = {});
 
     /// Values of the keys that may not change from a checkpoint to the restart, by "Section/Key": discretization,
@@ -368,7 +369,7 @@ namespace Nodus
     static std::string explain(const std::string &key);
 
   private:
-    /// One body, one boundary condition and one contact pair, for the reference.
+    /// One of everything that is numbered, for the reference.
     static std::vector<DeclaredKey> reference_keys();
 
     /// Binds every key to its member; the numbers of bodies, conditions and pairs are already set.

@@ -1,6 +1,7 @@
 #ifndef nodus_parameters_solution_parameters_h
 #define nodus_parameters_solution_parameters_h
 
+#include <nodus/base/types.h>
 #include <nodus/plugins/plugin.h>
 
 #include <string>
@@ -122,10 +123,40 @@ namespace Nodus
 
   struct OutputParameters
   {
-    std::string  results_folder; ///< empty = results/<name of the .prm file>, in the working folder
-    bool         write_vtu           = true;
-    unsigned int vtu_interval        = 1;  ///< every so many increments; 0 = only the last one
-    unsigned int checkpoint_interval = 10; ///< every so many increments; 0 = on signals only
+    enum class Configuration
+    {
+      undeformed, ///< where nodes were; with the displacement to warp by
+      deformed
+    };
+    enum class NodalValues
+    {
+      averaged, ///< over the cells around a node, which they share
+      by_cell   ///< each cell has nodes of its own
+    };
+    std::string              results_folder; ///< empty = results/<name of the .prm file>, in the working folder
+    bool                     write_vtu           = true;
+    unsigned int             vtu_interval        = 1;           ///< every so many increments; 0 = only the last one
+    std::vector<std::string> fields              = {"default"}; ///< names, see output_fields()
+    Configuration            configuration       = Configuration::undeformed; ///< of the points of VTU files
+    NodalValues              nodal_values        = NodalValues::averaged;     ///< stresses and strains of VTU files
+    unsigned int             checkpoint_interval = 10; ///< every so many increments; 0 = on signals only
+  };
+
+  /// A point of a body whose values are written.
+  struct OutputPointParameters
+  {
+    std::string  name;
+    unsigned int body = 1; ///< number, from 1
+    Vector3      position; ///< in the undeformed configuration, as the body stands in the model [length]
+  };
+
+  /// Points of a body along a straight line whose values are written.
+  struct OutputLineParameters
+  {
+    std::string  name;
+    unsigned int body = 1;     ///< number, from 1
+    Vector3      from, to;     ///< ends, as OutputPointParameters::position [length]
+    unsigned int points = 101; ///< at equal distances, with both ends
   };
 } // namespace Nodus
 
