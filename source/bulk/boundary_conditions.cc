@@ -1,7 +1,6 @@
 #include "bulk/boundary_conditions.h"
 #include "base/deal_ii_versions.h"
 #include "bulk/condition_value.h"
-#include "bulk/rigid_displacement.h"
 #include "parallel/throw_everywhere.h"
 #include "parameters/expression.h"
 
@@ -97,8 +96,6 @@ namespace Nodus
       , parameters_(parameters)
       , hanging_(dof_handler)
   {
-    for (unsigned int n = 0; n < parameters_.size(); ++n)
-      functions_.push_back(make_condition_value(parameters_[n], label(n)));
     driven_.assign(bodies.size(), false);
     for (unsigned int b = 0; b < body_parameters.size(); ++b)
       if (body_parameters[b].rigid)
@@ -106,13 +103,18 @@ namespace Nodus
         driven_[b] = !body_parameters[b].rigid_free.empty();
         BoundaryConditionParameters condition;
         condition.name        = bodies.name(b);
+        condition.type        = Type::rigid_motion;
         condition.region.body = b + 1;
         condition.components  = {0, 1, 2};
-        condition.value.assign(dim, "rigid motion");
+        condition.motion      = body_parameters[b].motion;
         parameters_.push_back(condition);
-        functions_.push_back(
-            std::make_unique<RigidDisplacement>(body_parameters[b].motion, label(parameters_.size() - 1)));
       }
+    for (unsigned int n = 0; n < parameters_.size(); ++n)
+    {
+      functions_.push_back(make_condition_value(parameters_[n], label(n)));
+      if (parameters_[n].type == Type::rigid_motion) // for messages
+        parameters_[n].value.assign(parameters_[n].components.size(), "rigid motion");
+    }
     add_loads();
     find_stages(interval_ends);
     for (unsigned int stage = stages_.size(); stage-- > 0;) // all are checked, the first one stays
@@ -127,7 +129,7 @@ namespace Nodus
     {
       std::vector<bool> acts;
       for (const auto &condition : parameters_)
-        acts.push_back(condition.type == Type::displacement && condition.acts(end));
+        acts.push_back(condition.holds() && condition.acts(end));
       if (!stages_.empty() && stages_.back().acts == acts)
         stages_.back().end = end;
       else
@@ -164,7 +166,7 @@ namespace Nodus
     std::vector<unsigned int> found(parameters_.size(), 0);
     std::string               error;
     for (unsigned int n = 0; n < parameters_.size(); ++n)
-      if (parameters_[n].type != Type::displacement)
+      if (!parameters_[n].holds())
       {
         const bool       on_cells = parameters_[n].type == Type::body_force;
         RegionParameters where    = parameters_[n].region;
@@ -235,7 +237,7 @@ namespace Nodus
     };
 
     for (unsigned int n = 0; n < parameters_.size(); ++n)
-      if (parameters_[n].type == Type::displacement)
+      if (parameters_[n].holds())
       {
         reaction_regions_.push_back(
             {parameters_[n].name.empty() ? "boundary condition " + std::to_string(n + 1) : parameters_[n].name, {}});

@@ -10,7 +10,7 @@
 
 namespace Nodus
 {
-  /// What a condition prescribes: the expressions of its value, or what a program gives instead.
+  /// What a condition prescribes: the expressions of its value, what a program gives instead, or a rigid motion.
   /// @throws InputError, named by @p label, where their number does not fit or one cannot be evaluated.
   std::unique_ptr<dealii::Function<dim>> make_condition_value(const BoundaryConditionParameters &parameters,
                                                               const std::string                 &label);

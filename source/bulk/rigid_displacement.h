@@ -6,16 +6,20 @@
 #include <deal.II/base/function.h>
 
 #include <string>
+#include <vector>
 
 namespace Nodus
 {
-  /// Displacement of the points of a rigid body that moves as prescribed.
+  /// Displacement of points that move as those of a rigid body, in some components.
   class RigidDisplacement : public dealii::Function<dim>
   {
   public:
     /// @p label: for messages. @throws InputError
-    RigidDisplacement(const PrescribedMotionParameters &parameters, const std::string &label)
-        : dealii::Function<dim>(dim)
+    RigidDisplacement(const PrescribedMotionParameters &parameters,
+                      const std::vector<unsigned int>  &components,
+                      const std::string                &label)
+        : dealii::Function<dim>(components.size())
+        , components_(components)
         , motion_(parameters, Point(), Vector3(), label)
         , now_(motion_.at(0.))
     {
@@ -27,14 +31,15 @@ namespace Nodus
       dealii::Function<dim>::set_time(t);
       now_ = motion_.at(t);
     }
-    double value(const Point &X, const unsigned int component) const override
+    double value(const Point &X, const unsigned int entry) const override
     {
-      return (now_.to(X) - X)[component];
+      return (now_.to(X) - X)[components_[entry]];
     }
 
   private:
-    PrescribedMotion motion_;
-    Placement        now_;
+    std::vector<unsigned int> components_;
+    PrescribedMotion          motion_;
+    Placement                 now_;
   };
 } // namespace Nodus
 

@@ -212,7 +212,7 @@ namespace Nodus
     bool any = false;
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
-      if (pairs[p].scheme != ContactPairParameters::Scheme::averaged)
+      if (pairs[p].scheme != ContactPairParameters::Scheme::averaged || !surfaces.acts(p))
         continue;
       any                 = true;
       const auto  rule    = face_rule(pairs[p], surfaces.degree());

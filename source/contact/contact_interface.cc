@@ -1,7 +1,5 @@
 #include "contact/contact_interface.h"
 #include "contact/geometry_tangent.h"
-#include "contact/initial_overlap.h"
-#include "contact/initial_ties.h"
 #include "contact/intrusion.h"
 #include "contact/loci.h"
 #include "contact/site_values.h"
@@ -45,12 +43,6 @@ namespace Nodus
     now_.stuck.assign(surfaces_.n_sites(), 0);
   }
 
-  void ContactInterface::begin_increment(const double begin, const double end, const double resolved_interference)
-  {
-    surfaces_.move_rigid_masters(begin, end);
-    status_.set_resolved_interference(resolved_interference);
-  }
-
   void ContactInterface::begin_attempt()
   {
     status_.begin_increment();
@@ -58,22 +50,6 @@ namespace Nodus
   }
 
   // ---------------------------------------------------------------------------------------------------- geometry pass
-
-  std::vector<std::string> ContactInterface::begin(const BlockVector &unknowns)
-  {
-    surfaces_.fetch_masters(unknowns.block(0));
-    gather(unknowns, unknowns.block(0));
-    // the first statuses are those before anything has moved, rigid masters included
-    surfaces_.move_rigid_masters(0., 0.);
-    freeze_geometry();
-    std::vector<double> distances;
-    for (unsigned int s = 0; s < pairing_.size(); ++s)
-      distances.push_back(distance(s));
-    refuse_overlap(pairs_, surfaces_, pairing_, distances);
-    status_.initialize(pairing_, distances);
-    keep_frames();
-    return describe_untied(pairs_, surfaces_, pairing_, status_, distances);
-  }
 
   void ContactInterface::gather(const BlockVector &unknowns, const Vector &start)
   {

@@ -40,16 +40,17 @@ namespace Nodus
                      const RigidBodies                        &rigid_bodies,
                      InterfaceState                           &now);
 
-    /// Where rigid masters are in the increment from @p begin to @p end, and which part of the interference of fits is
-    /// pressed out by its end.
-    void begin_increment(double begin, double end, double resolved_interference);
+    /// Where rigid masters are in the increment from @p begin to @p end, which pairs act in it, and which part of the
+    /// interference of each is pressed out by its end.
+    void begin_increment(double begin, double end, const std::vector<double> &resolved_interference);
     /// An attempt at it: closed sites have a partner, the laws are not regularised, the ledger is empty.
     void begin_attempt();
 
-    /// The first pairing of a run, at the displacements of @p unknowns, and the statuses that belong to it. Sentences
-    /// on what of tied pairs is not tied. @throws InputError on every rank where the bodies overlap too much, and where
-    /// nothing of a tied pair is tied.
-    std::vector<std::string> begin(const BlockVector &unknowns);
+    /// Pairs that act until time @p t open: the nodal forces that they have had, as add_forces() has them, are added to
+    /// @p ended. Of those that begin to act then, the first pairing at the displacements of @p unknowns, and the
+    /// statuses that belong to it. Sentences on what of tied pairs is not tied. @throws InputError on every rank where
+    /// the bodies overlap too much, and where nothing of a tied pair is tied.
+    std::vector<std::string> begin(BlockVector &unknowns, double t, Vector &ended);
     /// Takes positions and multipliers from @p unknowns; @p start: displacements as the increment began.
     void gather(const BlockVector &unknowns, const Vector &start);
     /// Projects anew at the displacements of @p unknowns and carries its multipliers over (eq. X1): Lambda keeps its
@@ -186,6 +187,8 @@ namespace Nodus
     }
 
   private:
+    void                 let_act(bool (ActiveTime::*acts)(double) const, double t);
+    void                 add_ended_forces(double t, BlockVector &unknowns, Vector &ended);
     void                 freeze_geometry();
     void                 keep_frames();
     void                 weigh();

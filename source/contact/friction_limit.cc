@@ -18,10 +18,7 @@ namespace Nodus
       : pair_(pair)
       , stiffness_(stiffness)
   {
-    if (pair.friction_factor == "1")
-      return;
-    factor_ = std::make_unique<dealii::FunctionParser<dim>>(1);
-    factor_->initialize("x,y,z,v", pair.friction_factor, {{"pi", dealii::numbers::PI}}, true);
+    set_time(0.);
   }
 
   FrictionLimit::~FrictionLimit()                         = default;
@@ -40,6 +37,14 @@ namespace Nodus
     if (own_law() != nullptr)
       return own_law()->follows_pressure();
     return pair_.friction_law == Friction::coulomb && pair_.friction_coefficient > 0.;
+  }
+
+  void FrictionLimit::set_time(const double t)
+  {
+    if (pair_.friction_factor == "1")
+      return;
+    factor_ = std::make_unique<dealii::FunctionParser<dim>>(1); // which takes four variables: the time is a constant
+    factor_->initialize("x,y,z,v", pair_.friction_factor, {{"pi", dealii::numbers::PI}, {"t", t}}, true);
   }
 
   double FrictionLimit::factor(const Point &X, const double rate) const

@@ -22,7 +22,7 @@ namespace Nodus
   /// - tied: no bound. Lambda is the traction over the stiffness given, which is its scale and nothing else;
   /// - a law of the user's: what that says, at most the shear limit where there is one.
   ///
-  /// The friction factor f is an expression of the reference position and of the slip rate.
+  /// The friction factor f is an expression of the reference position, of the slip rate and of the time.
   class FrictionLimit
   {
   public:
@@ -31,7 +31,7 @@ namespace Nodus
     ~FrictionLimit();
     FrictionLimit(FrictionLimit &&) noexcept;
 
-    /// There is any friction, and whether it depends on lambda; on position or slip rate.
+    /// There is any friction, and whether it depends on lambda; on position, slip rate or time.
     bool exists() const;
     bool follows_pressure() const;
     bool varies() const
@@ -39,6 +39,8 @@ namespace Nodus
       return factor_ != nullptr || own_law() != nullptr;
     }
 
+    /// The time that f is taken at.
+    void set_time(double t);
     /// f at reference position @p X and slip rate @p rate [length/time].
     double factor(const Point &X, double rate) const;
 

@@ -1,14 +1,17 @@
 #include "contact/initial_overlap.h"
+#include "base/text.h"
 #include "contact/intrusion.h"
 #include "contact/loci.h"
 #include "contact/pairing.h"
 #include "contact/surface.h"
 #include "mesh/bodies.h"
 #include "mesh/sides.h"
+#include "parallel/largest.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/mpi_remote_point_evaluation.h>
 
+#include <algorithm>
 #include <sstream>
 
 namespace Nodus
@@ -23,6 +26,11 @@ namespace Nodus
     double overlap_limit(const ContactPairParameters &pair, const ContactSurfaces &surfaces, const unsigned int p)
     {
       return pair.start.overclosure_limit > 0. ? pair.start.overclosure_limit : 0.5 * surfaces.face_size(p);
+    }
+
+    std::string overlap_at(const double t)
+    {
+      return "the bodies overlap at " + (t > 0. ? text("t = ", t, ", when the pair begins to act: ") : "the start: ");
     }
 
     std::string advice(const unsigned int pair)
@@ -71,14 +79,15 @@ namespace Nodus
   void refuse_overlap(const std::vector<ContactPairParameters> &pairs,
                       const ContactSurfaces                    &surfaces,
                       const Pairing                            &pairing,
-                      const std::vector<double>                &distance)
+                      const std::vector<double>                &distance,
+                      const double                              t)
   {
     std::vector<double>                    deepest(pairs.size(), 0.);
     std::vector<std::vector<unsigned int>> where(pairs.size());
     for (unsigned int s = 0; s < distance.size(); ++s)
     {
       const unsigned int p = surfaces.pair(s);
-      if (surfaces.is_owned(s) && surfaces.has_status(s) && pairing[s].found &&
+      if (surfaces.is_owned(s) && surfaces.has_status(s) && pairing[s].found && pairs[p].active_from == t &&
           distance[s] > deepest[p] + round_off * overlap_limit(pairs[p], surfaces, p))
       {
         deepest[p] = distance[s];
@@ -95,8 +104,8 @@ namespace Nodus
       if (dealii::Utilities::MPI::this_mpi_process(communicator) != worst.max_index)
         where[p].clear();
       std::ostringstream message;
-      message << "the bodies overlap at the start: " << loci(pairs, surfaces, where[p], 1).front() << " is "
-              << worst.max << " inside the master, the limit is " << limit << advice(p);
+      message << overlap_at(t) << loci(pairs, surfaces, where[p], 1).front() << " is " << worst.max
+              << " inside the master, the limit is " << limit << advice(p);
       throw InputError(message.str());
     }
   }
@@ -104,7 +113,9 @@ namespace Nodus
   void refuse_hidden_overlap(const std::vector<ContactPairParameters> &pairs,
                              const ContactSurfaces                    &surfaces,
                              const Bodies                             &bodies,
-                             const dealii::Mapping<dim>               &mapping)
+                             const dealii::Mapping<dim>               &mapping,
+                             const Vector                             &u,
+                             const double                              t)
   {
     const auto body_of = [&](const unsigned int p, const SurfaceSide side)
     { return (side == slave_side ? pairs[p].slave : pairs[p].master).body - 1; };
@@ -112,13 +123,23 @@ namespace Nodus
     std::vector<double> limits;
     for (unsigned int p = 0; p < pairs.size(); ++p)
       limits.push_back(overlap_limit(pairs[p], surfaces, p));
-    const std::vector<Point>    x            = surfaces.positions(std::vector<Vector3>(surfaces.nodes().size()));
-    const std::vector<DeepNode> nodes        = find_deep_nodes(surfaces,
-                                                        x,
-                                                        limits,
-                                                        [&](const unsigned int p, const SurfaceSide side)
-                                                        { return bodies.bounding_box(body_of(p, other(side))); });
-    const MPI_Comm              communicator = surfaces.layout().communicator;
+    std::vector<Vector3> moved;
+    surfaces.gather(u, moved);
+    const double          motion = largest_entry(u);
+    std::vector<DeepNode> nodes  = find_deep_nodes(surfaces,
+                                                  surfaces.positions(moved),
+                                                  limits,
+                                                  [&](const unsigned int p, const SurfaceSide side)
+                                                  {
+                                                    auto box = bodies.bounding_box(body_of(p, other(side)));
+                                                    box.extend(motion);
+                                                    return box;
+                                                  });
+    nodes.erase(std::remove_if(nodes.begin(),
+                               nodes.end(),
+                               [&](const DeepNode &node) { return pairs[node.pair].active_from != t; }),
+                nodes.end());
+    const MPI_Comm communicator = surfaces.layout().communicator;
     if (dealii::Utilities::MPI::sum(static_cast<unsigned int>(nodes.size()), communicator) == 0)
       return;
     std::vector<Point>        points;
@@ -137,10 +158,10 @@ namespace Nodus
         const DeepNode    &node = nodes[i];
         std::ostringstream message;
         deepest = node.depth;
-        message << "the bodies overlap at the start: " << (node.side == slave_side ? "slave" : "master") << " node "
-                << coordinates(node.x) << " of " << pair_label(pairs, node.pair) << " is " << node.depth
-                << " inside the " << (node.side == slave_side ? "master" : "slave") << ", the limit is "
-                << limits[node.pair] << advice(node.pair);
+        message << overlap_at(t) << (node.side == slave_side ? "slave" : "master") << " node " << coordinates(node.x)
+                << " of " << pair_label(pairs, node.pair) << " is " << node.depth << " inside the "
+                << (node.side == slave_side ? "master" : "slave") << ", the limit is " << limits[node.pair]
+                << advice(node.pair);
         text = message.str();
       }
     const auto worst = dealii::Utilities::MPI::min_max_avg(deepest, communicator);

@@ -57,12 +57,13 @@ namespace Nodus
                                            const ContactSurfaces                    &surfaces,
                                            const Pairing                            &pairing,
                                            const Status                             &status,
-                                           const std::vector<double>                &distance)
+                                           const std::vector<double>                &distance,
+                                           const double                              t)
   {
     std::vector<std::string> warnings;
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
-      if (pairs[p].contact_law != ContactPairParameters::ContactLaw::tied)
+      if (pairs[p].contact_law != ContactPairParameters::ContactLaw::tied || pairs[p].active_from != t)
         continue;
       const Ties ties = ties_of(p, surfaces, pairing, status, distance);
       if (ties.untied == 0)

@@ -272,7 +272,7 @@ namespace Nodus
     std::vector<DeepNode> found;
     for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
     {
-      if (surfaces.rigid_master(p) != nullptr)
+      if (surfaces.rigid_master(p) != nullptr || !surfaces.acts(p))
         continue;
       const Search search(surfaces, x, x, tolerated[p]);
       const auto  &slaves = surfaces.slave_faces(p), &masters = surfaces.master_faces(p);
@@ -298,7 +298,9 @@ namespace Nodus
     for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
     {
       Search search(surfaces, before, now, tolerated[p]);
-      if (RigidSurface *const master = surfaces.rigid_master(p))
+      if (RigidSurface *const master = surfaces.rigid_master(p); !surfaces.acts(p))
+        ;
+      else if (master != nullptr)
         search.find(surfaces.slave_faces(p), *master, begin, end);
       else
         search.find(surfaces.slave_faces(p), surfaces.master_faces(p));
@@ -316,7 +318,7 @@ namespace Nodus
     double                    part  = 1.;
     for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
     {
-      if (surfaces.rigid_master(p) != nullptr)
+      if (surfaces.rigid_master(p) != nullptr || !surfaces.acts(p))
         continue;
       const Search search(surfaces, before, now, 0.5 * reach[p]);
       const double landing = landing_depth * surfaces.face_size(p);

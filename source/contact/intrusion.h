@@ -42,8 +42,8 @@ namespace Nodus
                   const std::vector<double>                                                &tolerated,
                   const std::function<dealii::BoundingBox<dim>(unsigned int, SurfaceSide)> &around);
 
-  /// The intrusion of every pair, from the faces alone: no pairing, no statuses, no multipliers. Every node of the
-  /// surfaces counts, those that hang and those that carry no multipliers as well.
+  /// The intrusion of every pair that acts, from the faces alone: no pairing, no statuses, no multipliers. Every node
+  /// of the surfaces counts, those that hang and those that carry no multipliers as well.
   ///
   /// A node is behind a surface where the nearest point of the surface is none of its rim, has the node on its inner
   /// side and does not look the way of the node's own surface. It has passed where its way from @p before to @p now, a

@@ -170,7 +170,9 @@ namespace Nodus
       const unsigned int p       = surfaces.pair(s);
       RigidPoint         rigid;
       const double       tolerance = partnered_[s] ? partner_hysteresis : 1.;
-      if (geometry.rigid[p] != nullptr)
+      if (!surfaces.acts(p))
+        partnered_[s] = false;
+      else if (geometry.rigid[p] != nullptr)
         rigid = geometry.closest_on_rigid(p, sites.x[s], sites.normal[s], tolerance);
       else
         pairing.master = geometry.search[p].closest(sites.x[s], sites.normal[s], geometry.reach[p], tolerance);

@@ -29,8 +29,9 @@ namespace Nodus
   {
   public:
     /// Projects all sites; frames are restricted to the relative motion that the constraints leave free. Nodes of the
-    /// averaged scheme have a partner where @p averaged covers them. Each rank projects the sites it owns and
-    /// passes their frames on; a ghost has its master point where the face is here. Collective.
+    /// averaged scheme have a partner where @p averaged covers them, sites of pairs that do not act have none. Each
+    /// rank projects the sites it owns and passes their frames on; a ghost has its master point where the face is here.
+    /// Collective.
     ///
     /// A site that has a partner keeps it up to twice the projection tolerance: where contact itself moves a node
     /// across the limit, there would be no solution otherwise.

@@ -35,6 +35,7 @@ namespace Nodus
       , now_(now)
       , threshold_slope_(surfaces.n_sites(), 0.)
       , threshold_floor_(pairs.size(), 0.)
+      , resolved_(pairs.size(), 0.)
       , ledger_(surfaces.n_sites())
   {
     for (unsigned int p = 0; p < pairs.size(); ++p)
@@ -70,19 +71,19 @@ namespace Nodus
                     lasts && p.start.adjustment_distance == 0. ? tying_distance * size : p.start.adjustment_distance);
   }
 
-  void Status::initialize(const Pairing &pairing, const std::vector<double> &distance)
+  void Status::initialize(const Pairing &pairing, const std::vector<double> &distance, const double t)
   {
     using Initial = ContactPairParameters::InitialStatus;
     for (unsigned int k = 0; k < now_.contact.size(); ++k)
     {
-      if (!surfaces_.has_status(k) || !pairing[k].found)
+      const unsigned int p = surfaces_.pair(k);
+      if (!surfaces_.has_status(k) || !pairing[k].found || pairs_[p].active_from != t)
         continue;
-      const unsigned int p        = surfaces_.pair(k);
-      const auto        &pair     = pairs_[p];
-      const bool         lasts    = pair.contact_law != ContactLaw::unilateral; // closed for good
-      const double       reach    = closing_distance(p);
-      const double       touching = closure_at(gap_laws_[p].get(), 0.).overclosure;
-      const bool         near =
+      const auto  &pair     = pairs_[p];
+      const bool   lasts    = pair.contact_law != ContactLaw::unilateral; // closed for good
+      const double reach    = closing_distance(p);
+      const double touching = closure_at(gap_laws_[p].get(), 0.).overclosure;
+      const bool   near =
           touching - distance[k] <= reach && (pair.contact_law != ContactLaw::tied || distance[k] <= reach);
       now_.contact[k] = pair.start.status == Initial::closed || (pair.start.status == Initial::by_gap && near);
       if ((lasts && now_.contact[k]) || (pair.start.overclosure == Overclosure::adjust && near) ||

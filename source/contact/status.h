@@ -125,7 +125,7 @@ namespace Nodus
     /// What of d_n at the first pairing counts as no overclosure (d_n > 0) or gap (d_n < 0) now [length].
     double adjustment(const unsigned int site) const
     {
-      return now_.adjustment[site] * (interferes(surfaces_.pair(site)) ? 1. - resolved_ : 1.);
+      return now_.adjustment[site] * (interferes(surfaces_.pair(site)) ? 1. - resolved_[surfaces_.pair(site)] : 1.);
     }
     /// rho_n = h_n of the site's pair (eq. Q1) [pressure/length].
     double normal_augmentation(const unsigned int site) const
@@ -156,8 +156,9 @@ namespace Nodus
 
     /// Gap up to which sites of a pair start closed [length].
     double closing_distance(unsigned int pair) const;
-    /// First pairing of the run: by gap, closed or open, and what is adjusted. Collective.
-    void initialize(const Pairing &pairing, const std::vector<double> &distance);
+    /// First pairing of the pairs that begin to act at time @p t: by gap, closed or open, and what is adjusted.
+    /// Collective.
+    void initialize(const Pairing &pairing, const std::vector<double> &distance, double t);
     /// Imposes the state of one site: S, S_f and mu lambda_s; call it on every rank that has the site. Collective.
     void assign(unsigned int site, bool contact, bool stick, double threshold);
     /// Sites that lost their partner open.
@@ -185,8 +186,8 @@ namespace Nodus
     {
       return limits_[pair].exists();
     }
-    /// Whether some pair has friction at all; friction that depends on the pressure; friction that depends on position
-    /// or slip rate.
+    /// Whether some pair has friction at all; friction that depends on the pressure; friction that depends on position,
+    /// slip rate or time.
     bool has_friction() const
     {
       return has(&FrictionLimit::exists);
@@ -202,10 +203,13 @@ namespace Nodus
     /// The @p slip of the owned sites in an increment of this @p duration, whose rates friction factors and the laws of
     /// users depend on. @throws InputError on every rank where a factor or a limit is not >= 0. Collective.
     void set_slips(const std::vector<std::array<double, 2>> &slip, double duration);
-    /// Part of the interference of fits that is pressed out by now, 0 to 1.
-    void set_resolved_interference(const double part)
+    /// The time that friction depends on, and the part of the interference of each pair that is pressed out by then, 0
+    /// to 1.
+    void set_time(const double t, std::vector<double> resolved_interference)
     {
-      resolved_ = part;
+      for (FrictionLimit &limit : limits_)
+        limit.set_time(t);
+      resolved_ = std::move(resolved_interference);
     }
 
     /// Statuses forget which vectors this loop has visited. @p merged: updates follow single Newton iterations.
@@ -314,7 +318,7 @@ namespace Nodus
     std::vector<double>                                threshold_slope_; ///< of the sites
     std::vector<double>                                slip_length_; ///< of the sites, accumulated up to the iterate
     std::vector<double>                                threshold_floor_; ///< of the pairs
-    double                                             resolved_ = 0.;
+    std::vector<double>                                resolved_;        ///< interference, of the pairs
     std::vector<StatusLedger>                          ledger_;
     std::vector<std::vector<char>>                     visited_;
     std::vector<char>                                  opened_; ///< in this status loop

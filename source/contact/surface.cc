@@ -31,6 +31,7 @@ namespace Nodus
       , directory_(dof_handler, pairs.size())
       , slave_faces_(pairs.size())
       , master_faces_(pairs.size())
+      , acting_(pairs.size(), true)
   {
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {

@@ -90,6 +90,15 @@ namespace Nodus
     {
       return slave_faces_.size();
     }
+    /// Sites of a pair that does not act have no partner; all act before the first choice.
+    void let_act(std::vector<char> pairs)
+    {
+      acting_ = std::move(pairs);
+    }
+    bool acts(const unsigned int pair) const
+    {
+      return acting_[pair];
+    }
     /// The first are the slave nodes, in the order of slave_nodes(), then what else is on slave faces.
     const std::vector<SurfaceNode> &nodes() const
     {
@@ -360,6 +369,7 @@ namespace Nodus
     Held                                       held_;
     BlockLayout                                layout_;
     SurfaceGather                              gather_;
+    std::vector<char>                          acting_; ///< of each pair
   };
 } // namespace Nodus
 

@@ -59,7 +59,7 @@ namespace Nodus
     std::string           message;
     try
     {
-      const std::map<std::string, double> constants = {{"pi", dealii::numbers::PI}};
+      std::map<std::string, double> constants = {{"pi", dealii::numbers::PI}};
       if (variables == "t")
       {
         dealii::FunctionParser<1> function(1);
@@ -69,8 +69,13 @@ namespace Nodus
       else
       {
         dealii::FunctionParser<dim> function(1);
-        function.initialize(
-            variables, expression, constants, std::count(variables.begin(), variables.end(), ',') == dim);
+        std::string                 taken = variables;
+        if (std::count(taken.begin(), taken.end(), ',') > dim) // deal.II takes four: the fifth is a constant
+        {
+          constants[taken.substr(taken.rfind(',') + 1)] = 0.5;
+          taken.resize(taken.rfind(','));
+        }
+        function.initialize(taken, expression, constants, std::count(taken.begin(), taken.end(), ',') == dim);
         function.value(Point(0.5, 0.25, 0.125));
       }
     }

@@ -10,8 +10,8 @@
 
 namespace Nodus
 {
-  /// muParser's complaint about @p expression of @p variables ("x,y,z", and perhaps a fourth one, or "t" alone;
-  /// constant pi), empty when it is fine.
+  /// muParser's complaint about @p expression of @p variables ("x,y,z", and perhaps one or two more, or "t"
+  /// alone; constant pi), empty when it is fine.
   std::string expression_complaint(const std::string &expression, const std::string &variables);
 
   /// "not a number" or "infinite", for messages.

@@ -29,7 +29,7 @@ namespace Nodus
       }
     };
 
-    /// @p variables: "x,y,z", and perhaps a fourth one, or "t" alone.
+    /// @p variables: "x,y,z", and perhaps one or two more, or "t" alone.
     void check_expression(const Section     &section,
                           const std::string &key,
                           const std::string &text,
@@ -47,6 +47,12 @@ namespace Nodus
                const std::string                &prefix,
                const Vector3                    &axis);
     bool is_given(const PrescribedMotionParameters &motion);
+
+    /// @p what it is that acts; @p interval_ends: of the load path.
+    void check(const Section             &section,
+               const ActiveTime          &time,
+               const std::string         &what,
+               const std::vector<double> &interval_ends);
 
     /// Different predicates may separate faces of one id; the mesh will tell.
     bool share_faces(const RegionParameters &a, const RegionParameters &b);

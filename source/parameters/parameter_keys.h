@@ -83,6 +83,9 @@ namespace Nodus
 
     /// Keys "Translation", "Rotation", "Rotation axis", "Rotation centre" behind @p prefix. @p axis, @p centre: what
     /// counts where none are given.
+    /// "Active from" and "Active until"; @p what acts, and what is so from the latter on.
+    void add_active_time(ParameterHandler &prm, ActiveTime &time, const std::string &what, const std::string &after);
+
     void add_motion(ParameterHandler           &prm,
                     const std::string          &prefix,
                     PrescribedMotionParameters &motion,

@@ -4,6 +4,7 @@
 #include "parameters/parameter_keys.h"
 #include "parameters/parameter_reference.h"
 #include "parameters/plugin_keys.h"
+#include "parameters/table_file.h"
 #include <nodus/parameters/parameters.h>
 #include <nodus/plugins/error_indicator.h>
 #include <nodus/plugins/friction_law.h>
@@ -28,6 +29,7 @@ namespace Nodus
 
     const Names<BoundaryConditionParameters::Type> type_names = {
         {BoundaryConditionParameters::Type::displacement, "displacement"},
+        {BoundaryConditionParameters::Type::rigid_motion, "rigid motion"},
         {BoundaryConditionParameters::Type::traction, "traction"},
         {BoundaryConditionParameters::Type::pressure, "pressure"},
         {BoundaryConditionParameters::Type::body_force, "body force"},
@@ -147,7 +149,8 @@ namespace Nodus
           "Type",
           condition.type,
           type_names,
-          "What is prescribed [-]: displacement [length], traction per reference area [pressure], pressure that "
+          "What is prescribed [-]: displacement [length], that of points which move as one rigid body, traction per "
+          "reference area [pressure], pressure that "
           "follows the surface and pushes on the body where positive [pressure], body force per reference volume "
           "[force/volume], spring to the ground per reference area [pressure/length].");
       add_region(
@@ -164,20 +167,31 @@ namespace Nodus
           prm,
           "Value",
           condition.value,
-          "Prescribed value [as Type says]: expressions of x, y, z [length] and the time t [-], separated by "
-          "';', one for each component, or one that holds for all of them. Displacements count from the reference "
-          "position. A total force F is a traction F/A, A the area that --validate prints.");
-      const std::string how = "one of the Interval ends";
-      prm.add_parameter("Active from",
-                        condition.active_from,
-                        "Time after which the condition acts [-]: 0 or " + how + ".",
-                        not_negative);
-      prm.add_parameter("Active until",
-                        condition.active_until,
-                        "Time until which the condition acts [-]: " + how +
-                            "; 0: the end. From then on a load is zero and a displacement free; what held it, its "
-                            "reaction, goes to zero linearly in the interval after it.",
-                        not_negative);
+          "Prescribed value [as Type says]: expressions of x, y, z [length], the time t [-] and, where there is a "
+          "table, its value at time t, e.g. 0.5*x*table, separated by ';', one for each component, or one that holds "
+          "for all of them. Displacements count from the reference position. A total force F is a traction F/A, A the "
+          "area that --validate prints.");
+      prm.add_parameter("Table times",
+                        condition.table_times,
+                        "Times of a table [-], increasing, two at least, separated by ','. Its value, table in the "
+                        "expressions of Value, is linear between them, and that of the first or last time before and "
+                        "after them.",
+                        numbers);
+      prm.add_parameter("Table values",
+                        condition.table_values,
+                        "Values of the table at these times [as Type says], as many, separated by ','.",
+                        numbers);
+      prm.add_parameter("Table file",
+                        condition.table_file,
+                        "File that has the table instead [-], relative to the folder of the .prm file: in each line a "
+                        "time and a value, separated by ',', ';' or blanks; lines that begin with #, and a first line "
+                        "of names, are passed over.",
+                        Patterns::FileName());
+      add_motion(prm, "", condition.motion, "; of a rigid motion", "the origin");
+      add_active_time(prm,
+                      condition,
+                      "condition",
+                      "a load is zero and a displacement free; what held it, its reaction, goes to zero");
     }
 
     void add(ParameterHandler &prm, ContactPairParameters &pair)
@@ -333,6 +347,16 @@ namespace Nodus
     for (auto &pair : parameters.contact_pairs)
       if (std::string &name = pair.master_surface.file; !name.empty())
         name = (path.parent_path() / name).lexically_normal().string();
+    for (unsigned int n = 0; n < parameters.boundary_conditions.size(); ++n)
+      if (auto &condition = parameters.boundary_conditions[n]; !condition.table_file.empty())
+      {
+        const std::string section = "Boundary condition " + std::to_string(n + 1);
+        if (!condition.table_times.empty() || !condition.table_values.empty())
+          text.refuse(section, "Table file", "is given besides Table times or values; remove one of them");
+        condition.table_file = (path.parent_path() / condition.table_file).lexically_normal().string();
+        if (const std::string mistake = read_table(condition); !mistake.empty())
+          text.refuse(section, "Table file", mistake);
+      }
     for (auto &condition : parameters.boundary_conditions)
       if (condition.value.size() == 1 && condition.components.size() > 1)
         condition.value.resize(condition.components.size(), std::string(condition.value[0]));

@@ -1,3 +1,5 @@
+#include "base/text.h"
+#include "parameters/expression.h"
 #include "parameters/parameter_checks.h"
 
 #include <algorithm>
@@ -129,6 +131,27 @@ namespace Nodus
           "has no meaning for a rigid body; remove the material, or 'Rigid = true'");
     }
 
+    void check_table(const Section &section, const BoundaryConditionParameters &condition)
+    {
+      const std::vector<double> &times = condition.table_times;
+      const std::string          key   = condition.table_file.empty() ? "Table times" : "Table file";
+      section.require(condition.table_values.size() == times.size(),
+                      "Table values",
+                      "has " + std::to_string(condition.table_values.size()) + " entries for " +
+                          std::to_string(times.size()) + " of Table times; give one for each");
+      section.require(times.size() != 1, key, "has one time; give two or more, or write the value into Value");
+      for (unsigned int i = 1; i < times.size(); ++i)
+        section.require(times[i] > times[i - 1],
+                        key,
+                        text("goes from ", times[i - 1], " to ", times[i], "; the times must increase"));
+      section.require(times.empty() ||
+                          std::any_of(condition.value.begin(),
+                                      condition.value.end(),
+                                      [](const std::string &value) { return value.find("table") != value.npos; }),
+                      key,
+                      "has no effect, because Value does not ask for it; write for example 'Value = table'");
+    }
+
     void check(const Section                     &section,
                const BoundaryConditionParameters &condition,
                const unsigned int                 n_bodies,
@@ -152,6 +175,19 @@ namespace Nodus
                       "Components",
                       "names a direction twice; give each of x, y, z at most once");
 
+      check(section, condition.motion, "", Vector3());
+      if (condition.type == Type::rigid_motion)
+      {
+        section.require(condition.value.empty() && condition.table_times.empty(),
+                        condition.value.empty() ? "Table times" : "Value",
+                        "has no effect on a rigid motion; remove it, and give Translation or Rotation");
+        return check(section, condition, "condition", interval_ends);
+      }
+      section.require(!is_given(condition.motion),
+                      "Translation",
+                      "or Rotation has no effect on a " + text_of(condition.type) +
+                          "; remove them, or set 'Type = rigid motion'");
+      check_table(section, condition);
       const std::size_t wanted = directed ? condition.components.size() : 1;
       section.require(condition.value.size() == wanted,
                       "Value",
@@ -163,17 +199,10 @@ namespace Nodus
       for (const auto &expression : condition.value)
       {
         section.require(!expression.empty(), "Value", "has an empty expression; write 0 for zero");
-        check_expression(section, "Value", expression, "x,y,z,t");
+        check_expression(section, "Value", expression, condition.table_times.empty() ? "x,y,z,t" : "x,y,z,t,table");
       }
 
-      for (const auto &[key, t] : {std::pair<const char *, double>("Active from", condition.active_from),
-                                   {"Active until", condition.active_until}})
-        section.require(t == 0. || std::count(interval_ends.begin(), interval_ends.end(), t) > 0,
-                        key,
-                        "must be 0 or one of the times in Load stepping / Interval ends; add it there");
-      section.require(condition.active_until == 0. || condition.active_until > condition.active_from,
-                      "Active until",
-                      "is not after Active from; the condition would never act");
+      check(section, condition, "condition", interval_ends);
     }
 
     void check(const Section &section, const LinearSolverParameters &solver)
@@ -235,10 +264,18 @@ namespace Nodus
                      "Master translation",
                      "or rotation moves a surface at given times, which arc length cannot find; let a rigid body carry "
                      "the surface, with 'Master body', 'Rigid translation' or 'Rigid free' and 'Rigid force'");
-        pair.require(parameters.start.overclosure != Overclosure::interference || !load.has_arc_length(0),
+        pair.require(
+            expression_complaint(parameters.friction_factor, "x,y,z,v").empty(),
+            "Friction factor",
+            "depends on the time, which arc length is to find; take t out of it, or set 'Load stepping/Control "
+            "= time'");
+        const auto first =
+            std::upper_bound(load.interval_ends.begin(), load.interval_ends.end(), parameters.active_from);
+        pair.require(parameters.start.overclosure != Overclosure::interference ||
+                         !load.has_arc_length(first - load.interval_ends.begin()),
                      "Initial overclosure",
-                     "is pressed out in the course of the first interval, which must have 'Load stepping/Control = "
-                     "time': put one before, 'Control = time, arc length'");
+                     "is pressed out in the course of the first interval that the pair acts in, which must have 'Load "
+                     "stepping/Control = time': put one before, 'Control = time, arc length'");
       }
     }
 
@@ -327,6 +364,7 @@ namespace Nodus
     {
       const Section section{file, "Contact pair " + std::to_string(i + 1)};
       Nodus::check(section, contact_pairs[i], n_bodies);
+      ParameterChecks::check(section, contact_pairs[i], "pair", load_stepping.interval_ends);
       const ContactPairParameters &pair   = contact_pairs[i];
       const BodyParameters        &slave  = bodies[pair.slave.body - 1];
       const BodyParameters *const  master = pair.master.body > 0 ? &bodies[pair.master.body - 1] : nullptr;

@@ -14,13 +14,13 @@ namespace Nodus
                                          const std::string &variables)
   {
     const std::string problem = expression_complaint(text, variables);
+    std::string       names;
+    for (const char c : variables)
+      names += c == ',' ? ", " : std::string(1, c);
     section.require(problem.empty(),
                     key,
                     "has the expression '" + text + "' that does not parse: " + problem +
-                        (variables == "t" ? "; the variable is t"
-                                          : "; variables are x, y, z" +
-                                                (variables.size() > 5 ? std::string(", ") + variables.back() : "")) +
-                        ", constants pi");
+                        (variables == "t" ? "; the variable is t" : "; variables are " + names) + ", constants pi");
   }
 
   void ParameterChecks::check(const Section          &section,
@@ -55,6 +55,24 @@ namespace Nodus
     section.require(motion.rotation_centre.empty() || motion.rotation_centre.size() == dim,
                     prefixed(prefix, "Rotation centre"),
                     "has " + std::to_string(motion.rotation_centre.size()) + " numbers; give three, or none");
+  }
+
+  void ParameterChecks::check(const Section             &section,
+                              const ActiveTime          &time,
+                              const std::string         &what,
+                              const std::vector<double> &interval_ends)
+  {
+    for (const auto &[key, t] :
+         {std::pair<const char *, double>("Active from", time.active_from), {"Active until", time.active_until}})
+      section.require(t == 0. || std::count(interval_ends.begin(), interval_ends.end(), t) > 0,
+                      key,
+                      "must be 0 or one of the times in Load stepping / Interval ends; add it there");
+    section.require(time.active_until == 0. || time.active_until > time.active_from,
+                    "Active until",
+                    "is not after Active from; the " + what + " would never act");
+    section.require(time.active_from == 0. || time.active_from < interval_ends.back(),
+                    "Active from",
+                    "is the end of the load path; the " + what + " would never act");
   }
 
   bool ParameterChecks::is_given(const PrescribedMotionParameters &motion)
@@ -124,7 +142,7 @@ namespace Nodus
                       "Friction factor",
                       "has no effect without friction; give a Friction coefficient");
       if (factor)
-        check_expression(section, "Friction factor", pair.friction_factor, "x,y,z,v");
+        check_expression(section, "Friction factor", pair.friction_factor, "x,y,z,v,t");
     }
 
     void check_gap_law(const Section &section, const ContactPairParameters &pair)

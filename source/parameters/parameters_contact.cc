@@ -118,6 +118,21 @@ namespace Nodus
                    { expressions = dealii::Utilities::split_string_list(text, ';'); });
   }
 
+  void ParameterKeys::add_active_time(ParameterHandler  &prm,
+                                      ActiveTime        &time,
+                                      const std::string &what,
+                                      const std::string &after)
+  {
+    const std::string how = "one of the Interval ends";
+    prm.add_parameter(
+        "Active from", time.active_from, "Time after which the " + what + " acts [-]: 0 or " + how + ".", not_negative);
+    prm.add_parameter("Active until",
+                      time.active_until,
+                      "Time until which the " + what + " acts [-]: " + how + "; 0: the end. From then on " + after +
+                          " linearly in the interval after it.",
+                      not_negative);
+  }
+
   void ParameterKeys::add_motion(ParameterHandler           &prm,
                                  const std::string          &prefix,
                                  PrescribedMotionParameters &motion,
@@ -127,21 +142,18 @@ namespace Nodus
     add_expressions(prm,
                     prefixed(prefix, "Translation"),
                     motion.translation,
-                    "Shift of the rigid body at time t [length]: three expressions of t, separated by ';'.");
-    prm.add_parameter(
-        prefixed(prefix, "Rotation"),
-        motion.rotation,
-        "Angle by which the rigid body has turned at time t, before the translation [degrees]: expression "
-        "of t, e.g. 90*t.",
-        Patterns::Anything());
+                    "Shift at time t [length]: three expressions of t, separated by ';'.");
+    prm.add_parameter(prefixed(prefix, "Rotation"),
+                      motion.rotation,
+                      "Angle turned by at time t, before the translation [degrees]: expression of t, e.g. 90*t.",
+                      Patterns::Anything());
     prm.add_parameter(prefixed(prefix, "Rotation axis"),
                       motion.rotation_axis,
-                      "Axis about which the rigid body turns, right-handed [-]; three numbers" + axis + ".");
-    prm.add_parameter(
-        prefixed(prefix, "Rotation centre"),
-        motion.rotation_centre,
-        "Point that the rotation of the rigid body leaves where it is [length]; three numbers, empty: " + centre + ".",
-        numbers);
+                      "Axis of the rotation, right-handed [-]; three numbers" + axis + ".");
+    prm.add_parameter(prefixed(prefix, "Rotation centre"),
+                      motion.rotation_centre,
+                      "Point that the rotation leaves where it is [length]; three numbers, empty: " + centre + ".",
+                      numbers);
   }
 
   namespace
@@ -278,14 +290,14 @@ namespace Nodus
                  "Initial status",
                  pair.start.status,
                  initial_status_names,
-                 "Status of the slave nodes at the start [-].");
+                 "Status of the slave nodes at the start, or where the pair begins to act (Active from) [-].");
       add_choice(prm,
                  "Initial overclosure",
                  pair.start.overclosure,
                  overclosure_names,
                  "What happens to slave nodes that start inside the master [-]: they are pushed out in the first "
                  "increment; or stay where they are, free of stress; or are pushed out in the course of the first "
-                 "interval of the load path. Tied and bilateral pairs stay where they are.");
+                 "interval that the pair acts in. Tied and bilateral pairs stay where they are.");
       prm.add_parameter("Adjustment distance",
                         pair.start.adjustment_distance,
                         "Gaps up to this, too, start closed and free of stress, if overclosures stay [length]; tied "
@@ -317,5 +329,6 @@ namespace Nodus
                status_test_names,
                "Pressure used to decide between open and closed [-]: the weighted one is the nodal force over the "
                "nodal area.");
+    add_active_time(prm, pair, "pair", "it is open, and its forces go to zero");
   }
 } // namespace Nodus

@@ -67,12 +67,14 @@ namespace Nodus
                         pair.friction_direction,
                         "Of orthotropic friction: direction in space of the first coefficient, projected on the "
                         "surface [-]; three numbers.");
-      prm.add_parameter("Friction factor",
-                        pair.friction_factor,
-                        "Factor on the friction coefficients, of Tresca on the shear limit [-]: expression of the "
-                        "reference coordinates x, y, z [length] and of the slip rate v [length/time], e.g. "
-                        "0.6+0.4*exp(-v/10). The slip rate is the slip of the increment over its time.",
-                        Patterns::Anything());
+      prm.add_parameter(
+          "Friction factor",
+          pair.friction_factor,
+          "Factor on the friction coefficients, of Tresca on the shear limit [-]: expression of the "
+          "reference coordinates x, y, z [length], of the slip rate v [length/time] and of the time t [-], e.g. "
+          "0.6+0.4*exp(-v/10), or t>1 for friction that sets in after t = 1. The slip rate is the slip of "
+          "the increment over its time.",
+          Patterns::Anything());
       prm.add_parameter("Shear limit",
                         pair.shear_limit,
                         "Friction tractions do not exceed this [pressure]; 0: no limit (Coulomb).",

@@ -56,7 +56,7 @@ namespace Nodus
     {
       std::map<std::string, std::string> model;
       for (const auto &[key, value] : parameters.model())
-        if (const std::string last = key.substr(key.rfind('/') + 1); last != "Name")
+        if (const std::string last = key.substr(key.rfind('/') + 1); last != "Name" && last != "Table file")
           model[key] = (last == "Mesh file" || last == "Master file") && !value.empty()
                            ? "a file with checksum " + checksum_of(value)
                            : value;

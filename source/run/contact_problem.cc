@@ -86,9 +86,8 @@ namespace Nodus
       {
         model.set_conditions(path.at_hand().end);
         const auto pairing_timer = journal.profile.time(Phase::pairing);
-        for (const std::string &untied : model.begin_contact(states.now))
+        for (const std::string &untied : model.begin_contact(states, 0.))
           journal.console.line("warning: " + untied);
-        states.committed = states.now;
       }
       results.find_points();
       folder.emplace(parameters.output.results_folder, model.communicator);

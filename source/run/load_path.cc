@@ -40,6 +40,7 @@ namespace Nodus
     const auto        &adaptivity = parts_.model.parameters.adaptivity;
     const unsigned int interval   = parts_.model.parameters.output.checkpoint_interval;
     parts_.journal.console.begin_at(path.progress());
+    begin_interval();
     while (!path.finished())
     {
       if (path.exhausted())
@@ -70,12 +71,23 @@ namespace Nodus
       }
       if (interval > 0 && increment % interval == 0)
         parts_.checkpointing.write(path);
+      begin_interval();
     }
     warn_of_open_pairs();
   }
 
-  /// The increment at hand. @returns false where it has failed, and been halved. @throws SolverFailure where it cannot
-  /// be.
+  /// Contact pairs begin and cease to act between two intervals; checkpoints have the state before that.
+  void LoadPath::begin_interval()
+  {
+    const LoadStepping &path = parts_.path;
+    if (path.finished() || path.time() == 0. || !path.at_hand().begins_interval())
+      return;
+    parts_.model.set_conditions(path.target());
+    for (const std::string &untied : parts_.model.begin_contact(parts_.states, path.time()))
+      parts_.journal.console.remark("warning: " + untied);
+  }
+
+  /// @returns false where the increment at hand has failed, and been halved. @throws SolverFailure where it cannot be.
   bool LoadPath::solve()
   {
     LoadStepping   &path      = parts_.path;
@@ -132,8 +144,7 @@ namespace Nodus
     }
   }
 
-  /// The increment at hand has failed: it is halved, or ends with the interval. @returns false when neither is
-  /// possible.
+  /// Halves the increment at hand, which has failed, or ends it with the interval. @returns false where it cannot.
   bool LoadPath::try_smaller(const SolverFailure::Kind failure)
   {
     if (failure != SolverFailure::Kind::beyond_interval)
@@ -358,8 +369,7 @@ namespace Nodus
     parts_.journal.console.remark(text.str());
   }
 
-  /// The state is the last one that converged. @p hint: where to read more. @p may_shrink: smaller increments might
-  /// have come further.
+  /// The state is the last converged one. @p hint: where to read more. @p may_shrink: smaller increments might help.
   void LoadPath::give_up(const std::string &reason, const std::string &hint, const bool may_shrink)
   {
     const LoadStepping &path = parts_.path;

@@ -39,6 +39,7 @@ namespace Nodus
     void follow(const std::function<void(unsigned int, double)> &callback);
 
   private:
+    void              begin_interval();
     bool              solve();
     bool              try_smaller(SolverFailure::Kind failure);
     void              check_closing() const;

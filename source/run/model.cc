@@ -6,6 +6,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/mapping_q_cache.h>
 
 #include <algorithm>
 #include <cmath>
@@ -138,16 +139,39 @@ namespace Nodus
     rigid_bodies.set_time(t);
   }
 
-  std::vector<std::string> Model::begin_contact(State &now)
+  std::vector<std::string> Model::begin_contact(States &states, const double t)
   {
-    const std::vector<std::string> untied = contact->begin(now.unknowns);
-    refuse_hidden_overlap(parameters.contact_pairs, contact->surfaces(), bodies, *mapping);
+    const auto &pairs = parameters.contact_pairs;
+    if (t > 0. && std::none_of(pairs.begin(),
+                               pairs.end(),
+                               [t](const ActiveTime &pair) { return pair.active_from == t || pair.active_until == t; }))
+      return {};
+    State &now = states.now;
+    Vector ended(now.reaction); // its map
+    ended                                 = 0.;
+    const std::vector<std::string> untied = contact->begin(now.unknowns, t, ended);
+    now.reaction -= ended;
+    now.applied -= ended;
+    dealii::MappingQCache<dim> deformed(fe.degree);
+    if (t > 0.)
+      deformed.initialize(*mapping, dof_handler, with_ghosts(now.unknowns.block(0)), true);
+    const dealii::Mapping<dim> &as_it_is = t > 0. ? deformed : *mapping;
+    refuse_hidden_overlap(pairs, contact->surfaces(), bodies, as_it_is, now.unknowns.block(0), t);
+    states.committed = now;
     return untied;
   }
 
-  double Model::resolved_interference(const double t) const
+  std::vector<double> Model::resolved_interference(const double t) const
   {
-    return std::min(1., t / parameters.load_stepping.interval_ends.front());
+    const std::vector<double> &ends = parameters.load_stepping.interval_ends;
+    std::vector<double>        parts;
+    for (const ContactPairParameters &pair : parameters.contact_pairs)
+    {
+      const double from = pair.active_from;
+      const auto   end  = std::upper_bound(ends.begin(), ends.end(), from); // of the first interval that it acts in
+      parts.push_back(t > from ? std::min(1., (t - from) / (*end - from)) : 0.);
+    }
+    return parts;
   }
 
   void Model::impose(const Increment &increment)

@@ -33,12 +33,13 @@ namespace Nodus
     /// Prescribed displacements, loads and rigid motions at time @p t. Collective. @throws InputError, on every rank,
     /// where one is not a number.
     void set_conditions(double t);
-    /// The first pairing of a run, in the state @p now at rest. Sentences on what of tied pairs is not tied.
-    /// Collective.
-    /// @throws InputError on every rank where the bodies overlap too much, and where nothing of a tied pair is tied.
-    std::vector<std::string> begin_contact(State &now);
-    /// Part of the interference of fits that is pressed out at time @p t.
-    double resolved_interference(double t) const;
+    /// Contact pairs that begin or cease to act at time @p t do so (ContactInterface::begin), in the states that an
+    /// increment from there begins with; what held the latter is released like a reaction. Sentences on what of tied
+    /// pairs is not tied. Collective. @throws InputError on every rank where the bodies overlap too much, and where
+    /// nothing of a tied pair is tied.
+    std::vector<std::string> begin_contact(States &states, double t);
+    /// Part of the interference of each pair that is pressed out at time @p t.
+    std::vector<double> resolved_interference(double t) const;
     /// All that holds in @p increment: conditions, stabilisation, the part of interference fits. Collective.
     void impose(const Increment &increment);
     /// The state at hand becomes the one that the increment began with, and what refers to it follows. Collective.

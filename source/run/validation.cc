@@ -96,8 +96,7 @@ namespace Nodus
         for (const auto face : cell->face_indices())
           if (!on_cell && region.contains_face(cell, face))
           {
-            const bool takes = condition.type == Type::displacement ? take_nodes(cell, face)
-                                                                    : region.selects_face(mapping, cell, face);
+            const bool takes = condition.holds() ? take_nodes(cell, face) : region.selects_face(mapping, cell, face);
             if (!takes || !cell->is_locally_owned())
               continue;
             ++extent.faces;
@@ -125,11 +124,15 @@ namespace Nodus
         text << counted(extent.cells, "cell") << ", volume " << extent.measure;
       else
       {
-        if (condition.type == Type::displacement)
+        if (condition.holds())
           text << counted(extent.nodes, "node") << " and ";
         text << counted(extent.faces, "face") << ", area " << extent.measure;
       }
-      text << ", value " << joined(condition.value, "; ");
+      if (condition.type == Type::rigid_motion)
+        text << ", translation " << joined(condition.motion.translation, "; ") << ", rotation "
+             << condition.motion.rotation;
+      else
+        text << ", value " << joined(condition.value, "; ");
       return text.str();
     }
 
@@ -303,10 +306,15 @@ namespace Nodus
     {
       const ContactSurfaces       &surfaces   = model.contact->surfaces();
       const ContactPairParameters &parameters = model.parameters.contact_pairs[pair];
-      std::vector<unsigned int>    lost;
-      const Gaps                   gaps = gaps_of(model, pair, lost);
-      const std::string            name = "  contact pair " + std::to_string(pair + 1);
+      const std::string            name       = "  contact pair " + std::to_string(pair + 1);
       std::ostringstream           text;
+      if (parameters.active_from > 0.)
+      {
+        text << name << ": " << describe(parameters) << ", acts after t = " << parameters.active_from;
+        return console.line(text.str());
+      }
+      std::vector<unsigned int> lost;
+      const Gaps                gaps = gaps_of(model, pair, lost);
       text << name << ": " << gaps.found << " of " << gaps.sites
            << (surfaces.has_points(pair) ? " integration points" : " slave nodes") << " find a master point";
       if (gaps.found > 0)
@@ -356,8 +364,7 @@ namespace Nodus
   {
     describe_bodies(model, console);
     describe_conditions(model, console);
-    const std::vector<std::string> untied = model.begin_contact(states.now);
-    states.committed                      = states.now;
+    const std::vector<std::string> untied = model.begin_contact(states, 0.);
     for (unsigned int pair = 0; pair < model.contact->surfaces().n_pairs(); ++pair)
       describe_pair(model, pair, console);
     for (const std::string &sentence : untied)

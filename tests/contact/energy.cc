@@ -250,8 +250,7 @@ int main(int argc, char **argv)
       EnergyAudit        audit(model, journal, states, equilibrium);
       journal.tables = std::make_unique<Tables>(p.output.results_folder, world());
       equilibrium.begin_on_mesh();
-      model.contact->begin(states.now.unknowns);
-      states.committed = states.now;
+      model.begin_contact(states, 0.);
       equilibrium.begin_increment(path.at_hand());
       strategy.solve_increment();
       states.now.history = model.solid->reached();

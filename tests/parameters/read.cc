@@ -93,6 +93,12 @@ namespace
     print("region", condition.region);
     print("components", condition.components);
     print("value", condition.value);
+    print("table times", condition.table_times);
+    print("table values", condition.table_values);
+    print("table file is none, or in the folder of the .prm file",
+          condition.table_file.empty() || condition.table_file == SOURCE_DIR "/load.csv");
+    print("table file", !condition.table_file.empty());
+    print("motion", condition.motion);
     print("active from", condition.active_from);
     print("active until", condition.active_until);
   }
@@ -142,6 +148,8 @@ namespace
     print("adjustment distance", pair.start.adjustment_distance);
     print("overclosure limit", pair.start.overclosure_limit);
     print_choice("status test", pair.status_test);
+    print("active from", pair.active_from);
+    print("active until", pair.active_until);
   }
 
   void print(const std::string &name, const LoopParameters &loop)

@@ -31,8 +31,7 @@ namespace
     {
       journal.tables = std::make_unique<Tables>(p.output.results_folder, world());
       equilibrium.begin_on_mesh();
-      model.contact->begin(states.now.unknowns);
-      states.committed = states.now;
+      model.begin_contact(states, 0.);
     }
     void solve()
     {

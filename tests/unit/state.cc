@@ -210,7 +210,7 @@ namespace
     LoadStepping  path(p.load_stepping);
     journal.tables = std::make_unique<Tables>(p.output.results_folder, MPI_COMM_WORLD);
     equilibrium.begin_on_mesh();
-    model.contact->begin(states.now.unknowns);
+    model.begin_contact(states, 0.);
 
     randomise(model, states.now, 1);
     const std::vector<double> expected = numbers(model, states.now);

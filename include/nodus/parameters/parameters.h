@@ -2,10 +2,10 @@
 #define nodus_parameters_parameters_h
 
 #include <nodus/base/types.h>
+#include <nodus/parameters/condition_parameters.h>
 #include <nodus/parameters/solution_parameters.h>
 #include <nodus/plugins/plugin.h>
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -28,37 +28,6 @@ namespace Nodus
   /// member with blanks, "Young's modulus" and the like excepted. Keys are bound to members and checked
   /// in source/parameters/ (parameters*.cc); values here are the defaults that `nodus --document`
   /// prints.
-
-  /// A part of the boundary: faces of one body (or of all) with the given boundary ids.
-  struct RegionParameters
-  {
-    unsigned int                            body = 0; ///< number of the body, 0 = every body
-    std::vector<dealii::types::boundary_id> boundary_ids;
-    std::string                             where; ///< muParser predicate of x, y, z; empty = everywhere
-    /// Names of physical surfaces, which Parameters::read() replaces by their ids, unless every body is meant ...
-    std::vector<std::string> boundary_names = {};
-    /// ... of which each, by its number, may have other ids for the same names.
-    std::map<unsigned int, std::vector<dealii::types::boundary_id>> ids_of_body = {};
-
-    /// Whether faces of a body (by number) with the boundary id @p id belong to it, but for where.
-    bool takes(unsigned int of_body, dealii::types::boundary_id id) const;
-    /// Whether ids or names are given at all.
-    bool has_ids() const
-    {
-      return !boundary_ids.empty() || !boundary_names.empty();
-    }
-    /// "1, 5", with the names of a region of every body behind the ids.
-    std::string ids_text() const;
-  };
-
-  /// A rigid body in time: x = c + R(t) (X - c) + T(t).
-  struct PrescribedMotionParameters
-  {
-    std::vector<std::string> translation = {"0", "0", "0"}; ///< T, muParser expressions of t [length]
-    std::string              rotation    = "0";             ///< angle about the axis, expression of t [degrees]
-    Vector3                  rotation_axis;                 ///< zero: what the owner says
-    std::vector<double>      rotation_centre;               ///< c, reference position; empty: what the owner says
-  };
 
   /// A rigid surface in closed form or of triangles, its body on one side. Convex bodies, or a cavity around the slave.
   struct MasterSurfaceParameters
@@ -148,35 +117,6 @@ namespace Nodus
     std::vector<std::string>   rigid_moment = {"0", "0", "0"}; ///< about the centre as it moves [force length]
   };
 
-  struct BoundaryConditionParameters
-  {
-    enum class Type
-    {
-      displacement,
-      traction,   ///< dead, per reference area
-      pressure,   ///< follower, per current area, positive pushes on the body
-      body_force, ///< dead, per reference volume; the region's body only
-      spring      ///< to ground, stiffness per reference area
-    };
-    std::string               name;
-    Type                      type = Type::displacement;
-    RegionParameters          region;
-    std::vector<unsigned int> components; ///< 0, 1, 2; not used by pressure
-    std::vector<std::string>  value;      ///< muParser expressions of x, y, z, t: one per component, one for pressure
-    /// What a program sets instead of the expressions, called with reference position, time and place in value, which
-    /// keeps its length. It may follow what the program sees after an increment: what it gives changes from increment
-    /// to increment alone, and is the same on every rank.
-    std::function<double(const Point &, double, unsigned int)> function;
-    double active_from  = 0.; ///< acts in the increments after this time ...
-    double active_until = 0.; ///< ... that end at this time at the latest; 0 = the whole path
-
-    /// Whether it counts for the equilibrium at time @p t.
-    bool acts(const double t) const
-    {
-      return (active_from == 0. || t > active_from) && (active_until == 0. || t <= active_until);
-    }
-  };
-
   /// How surfaces in contact give way under pressure p: the overclosure d, minus the gap.
   struct PressureGapParameters
   {
@@ -197,7 +137,7 @@ namespace Nodus
     Chosen<PressureGapLaw> own_law; ///< one that a plug-in has registered, or that the program makes
   };
 
-  struct ContactPairParameters
+  struct ContactPairParameters : ActiveTime
   {
     enum class Scheme
     {
@@ -265,9 +205,9 @@ namespace Nodus
     {
       resolve,     ///< pressed out of each other in the first increment
       adjust,      ///< taken as the undeformed state
-      interference ///< pressed out in the course of the first interval
+      interference ///< pressed out in the course of the interval that the pair begins to act in
     };
-    /// The statuses that a run begins with.
+    /// What holds as a run begins, or where the pair begins to act later.
     struct Start
     {
       InitialStatus      status              = InitialStatus::by_gap;
@@ -283,7 +223,7 @@ namespace Nodus
     double                friction_coefficient        = 0.;
     double                second_friction_coefficient = 0.; ///< across the friction direction; 0: the same
     Vector3               friction_direction;               ///< of the first coefficient; zero: there is only one
-    std::string           friction_factor = "1";            ///< of reference x, y, z and slip rate v
+    std::string           friction_factor = "1";            ///< of reference x, y, z, slip rate v and time t
     double                shear_limit     = 0.;             ///< [pressure]; 0: none
     double                elastic_slip    = 0.;             ///< at which friction reaches its limit [length]
     PressureGapParameters pressure_gap;

@@ -40,8 +40,7 @@ namespace Nodus
       bool may_hold(const BoundaryConditionParameters &condition, const RegionParameters &side, const bool around)
       {
         const auto &ids = side.boundary_ids;
-        return condition.type == BoundaryConditionParameters::Type::displacement &&
-               (condition.region.body == 0 || condition.region.body == side.body) &&
+        return condition.holds() && (condition.region.body == 0 || condition.region.body == side.body) &&
                (around || !condition.region.has_ids() ||
                 std::any_of(
                     ids.begin(), ids.end(), [&](const auto id) { return condition.region.takes(side.body, id); }));

@@ -1,0 +1,98 @@
+#ifndef nodus_parameters_condition_parameters_h
+#define nodus_parameters_condition_parameters_h
+
+#include <nodus/base/types.h>
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+// Where, when and what is prescribed. Boundary conditions are a subsection of the parameter file, as in parameters.h;
+// the other structs are parts of subsections.
+
+namespace Nodus
+{
+  /// A part of the boundary: faces of one body (or of all) with the given boundary ids.
+  struct RegionParameters
+  {
+    unsigned int                            body = 0; ///< number of the body, 0 = every body
+    std::vector<dealii::types::boundary_id> boundary_ids;
+    std::string                             where; ///< muParser predicate of x, y, z; empty = everywhere
+    /// Names of physical surfaces, which Parameters::read() replaces by their ids, unless every body is meant ...
+    std::vector<std::string> boundary_names = {};
+    /// ... of which each, by its number, may have other ids for the same names.
+    std::map<unsigned int, std::vector<dealii::types::boundary_id>> ids_of_body = {};
+
+    /// Whether faces of a body (by number) with the boundary id @p id belong to it, but for where.
+    bool takes(unsigned int of_body, dealii::types::boundary_id id) const;
+    /// Whether ids or names are given at all.
+    bool has_ids() const
+    {
+      return !boundary_ids.empty() || !boundary_names.empty();
+    }
+    /// "1, 5", with the names of a region of every body behind the ids.
+    std::string ids_text() const;
+  };
+
+  /// A rigid body in time: x = c + R(t) (X - c) + T(t).
+  struct PrescribedMotionParameters
+  {
+    std::vector<std::string> translation = {"0", "0", "0"}; ///< T, muParser expressions of t [length]
+    std::string              rotation    = "0";             ///< angle about the axis, expression of t [degrees]
+    Vector3                  rotation_axis;                 ///< zero: what the owner says
+    std::vector<double>      rotation_centre;               ///< c, reference position; empty: what the owner says
+  };
+
+  /// When a boundary condition or a contact pair acts.
+  struct ActiveTime
+  {
+    double active_from  = 0.; ///< in the increments after this time ...
+    double active_until = 0.; ///< ... that end at this time at the latest; 0 = the whole path
+
+    /// Whether it counts for the equilibrium at time @p t, and for those right after it.
+    bool acts(const double t) const
+    {
+      return (active_from == 0. || t > active_from) && (active_until == 0. || t <= active_until);
+    }
+    bool acts_after(const double t) const
+    {
+      return t >= active_from && (active_until == 0. || t < active_until);
+    }
+  };
+
+  struct BoundaryConditionParameters : ActiveTime
+  {
+    enum class Type
+    {
+      displacement,
+      rigid_motion, ///< displacement of points that move as one rigid body
+      traction,     ///< dead, per reference area
+      pressure,     ///< follower, per current area, positive pushes on the body
+      body_force,   ///< dead, per reference volume; the region's body only
+      spring        ///< to ground, stiffness per reference area
+    };
+    std::string               name;
+    Type                      type = Type::displacement;
+    RegionParameters          region;
+    std::vector<unsigned int> components; ///< 0, 1, 2; not used by pressure
+    /// muParser expressions of x, y, z, t and the value of the table: one per component, one for pressure.
+    std::vector<std::string>   value;
+    std::vector<double>        table_times;  ///< of the table, increasing [time] ...
+    std::vector<double>        table_values; ///< ... and its values, linear between them [as type says]
+    std::string                table_file;   ///< that has them; Parameters::read() replaces it by these
+    PrescribedMotionParameters motion;       ///< of type rigid_motion; keys "Translation", "Rotation", ...
+    /// What a program sets instead of the expressions, called with reference position, time and place in value, which
+    /// keeps its length. It may follow what the program sees after an increment: what it gives changes from increment
+    /// to increment alone, and is the same on every rank.
+    std::function<double(const Point &, double, unsigned int)> function;
+
+    /// Whether it prescribes displacements.
+    bool holds() const
+    {
+      return type == Type::displacement || type == Type::rigid_motion;
+    }
+  };
+} // namespace Nodus
+
+#endif
