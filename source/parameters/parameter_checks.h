@@ -59,6 +59,10 @@ namespace Nodus
 
     void check(const Section &section, const MaterialParameters &material);
     void check(const Section &section, const ContactPairParameters &pair, unsigned int n_bodies);
+    void check(const Section                     &section,
+               const BoundaryConditionParameters &condition,
+               unsigned int                       n_bodies,
+               const std::vector<double>         &interval_ends);
 
     /// Of the law, where it is one's own.
     void initialize(const Section &section, const MaterialParameters &material);
