@@ -1,5 +1,6 @@
 #include "run/checkpointing.h"
 #include "parallel/throw_everywhere.h"
+#include "run/checkpointed_model.h"
 #include "run/state_vectors.h"
 #include <nodus/base/signals.h>
 
@@ -7,15 +8,14 @@
 #include <deal.II/base/utilities.h>
 #include <deal.II/grid/cell_id.h>
 
-#include <boost/crc.hpp>
 #include <boost/serialization/map.hpp>
 
 #include <algorithm>
 #include <csignal>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
+#include <vector>
 
 // A checkpoint holds the committed state, and what of the run is not in the parameters.
 
@@ -40,42 +40,6 @@ namespace Nodus
             .lines;
       }
     };
-
-    std::string checksum_of(const std::string &file)
-    {
-      std::ifstream      stream(file, std::ios::binary);
-      boost::crc_32_type crc;
-      char               buffer[65536];
-      while (stream.read(buffer, sizeof buffer) || stream.gcount() > 0)
-        crc.process_bytes(buffer, stream.gcount());
-      return std::to_string(crc.checksum());
-    }
-
-    /// Names and places of files may change, their contents may not.
-    std::map<std::string, std::string> model_of(const Parameters &parameters)
-    {
-      std::map<std::string, std::string> model;
-      for (const auto &[key, value] : parameters.model())
-        if (const std::string last = key.substr(key.rfind('/') + 1); last != "Name" && last != "Table file")
-          model[key] = (last == "Mesh file" || last == "Master file") && !value.empty()
-                           ? "a file with checksum " + checksum_of(value)
-                           : value;
-      return model;
-    }
-
-    std::string first_difference(const std::map<std::string, std::string> &then,
-                                 const std::map<std::string, std::string> &now)
-    {
-      for (const auto &[key, value] : now)
-        if (const auto before = then.find(key); before == then.end())
-          return "'" + key + "' did not exist then";
-        else if (before->second != value)
-          return "'" + key + "' was '" + before->second + "' and is '" + value + "' now";
-      for (const auto &[key, value] : then)
-        if (now.count(key) == 0)
-          return "'" + key + "' does not exist any more";
-      return "";
-    }
 
     std::string name_of(const int signal)
     {
@@ -175,7 +139,8 @@ namespace Nodus
   {
     const auto             timer    = journal_.profile.time(Phase::output);
     const ContactSurfaces &surfaces = model_.contact->surfaces();
-    Common common{model_of(model_.parameters), path, pack_common(states_.committed), journal_.tables->rows(), {}};
+    Common                 common{
+        checkpointed_model(model_.parameters), path, pack_common(states_.committed), journal_.tables->rows(), {}};
     if (const VtuOutput *const vtu = results_.vtu())
       common.series = vtu->series();
 
@@ -227,7 +192,7 @@ namespace Nodus
     if (!found->remark.empty())
       journal_.console.line("Passed over: " + found->remark);
     const Common      common = dealii::Utilities::unpack<Common>(found->common);
-    const std::string other  = first_difference(common.model, model_of(model_.parameters));
+    const std::string other = first_difference(common.model, checkpointed_model(model_.parameters), common.path.time());
     throw_everywhere<InputError>(other.empty()
                                      ? ""
                                      : "the checkpoint in " + model_.parameters.output.results_folder +
