@@ -33,9 +33,10 @@ namespace Nodus
         return name.compare(0, 5, "Slave") == 0 || name.compare(0, 6, "Master") == 0 || name == "Scheme" ||
                name == "Integration" || name == "Quadrature rule";
       };
+      const double          present = (1. - 1e-5) * t; // values have six digits
       std::set<std::string> ahead;
       for (const auto &[key, value] : model)
-        if (const std::string section = section_of(key); key == section + "/Active from" && std::stod(value) >= t)
+        if (const std::string section = section_of(key); key == section + "/Active from" && std::stod(value) >= present)
           ahead.insert(section);
       for (auto entry = model.begin(); entry != model.end();)
       {
@@ -43,7 +44,7 @@ namespace Nodus
         const bool        lies_ahead =
             ahead.count(section) > 0 && (section.compare(0, 7, "Contact") != 0 || !makes_sites(name));
         const bool goes_on =
-            name == "Active until" && (std::stod(entry->second) == 0. || std::stod(entry->second) >= t);
+            name == "Active until" && (std::stod(entry->second) == 0. || std::stod(entry->second) >= present);
         entry = lies_ahead || goes_on ? model.erase(entry) : std::next(entry);
       }
       return model;
