@@ -17,7 +17,8 @@ namespace Nodus
   {
     /// Relative force residual up to which an iterate right after a prescribed motion has all its statuses tested.
     constexpr double settled_force = 1e-3;
-    /// Relative force residual up to which the derivatives of the geometry tell where pairings go.
+    /// Relative force residual that a correction leaves behind, up to which the derivatives of the geometry tell where
+    /// pairings go.
     constexpr double linear_geometry = 0.1;
   } // namespace
 
@@ -196,6 +197,7 @@ namespace Nodus
         norms         = assemble_contact();
         norms.changes = changes;
       }
+    scattered_ = !first && norms.force > linear_geometry;
     return norms;
   }
 
@@ -237,14 +239,13 @@ namespace Nodus
     norms.contact    = model_.contact->norm(length);
     norms.prescribed = std::max(largest_entry(prescribed), std::abs(arc_length_.missing())) / length;
     driven_.add_to(system_, forces_.internal, forces_.external, scale, length, norms);
-    forces_.rest = norms.force;
     return norms;
   }
 
   unsigned int Equilibrium::solve(BlockVector &correction, const double relative_tolerance)
   {
     // A converged iterate never needs it, and far from balance it leads astray: sites pass on to other faces.
-    if (merged_.geometry && forces_.rest <= linear_geometry)
+    if (merged_.geometry && !scattered_)
     {
       const auto timer = journal_.profile.time(Phase::contact_assembly);
       model_.contact->add_geometry_tangent(system_);

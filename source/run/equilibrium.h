@@ -38,7 +38,6 @@ namespace Nodus
     Vector released;       ///< what is left of reactions where nothing is prescribed any more
     Vector out_of_balance; ///< the sum, zero where prescribed
     double scale   = 0.;   ///< that they are relative to in the norms
-    double rest    = 0.;   ///< largest one out of balance over the scale: e_F (eq. N3)
     double largest = 0.;   ///< of all nodes and kinds
     double noise   = 0.;   ///< NormScales::noise over the largest one: beyond 1, round-off limits what is known
   };
@@ -174,6 +173,7 @@ namespace Nodus
     DoFIndex                                 null_pivot_        = dealii::numbers::invalid_dof_index;
     bool                                     singular_          = false;
     bool                                     unstable_          = false;
+    bool                                     scattered_         = false; ///< an iterate is far from balance
     bool                                     motions_unknown_   = false; ///< an interval begins
     double                                   step_limit_        = 1.;    ///< part of the correction that may be taken
     double                                   prescribed_before_ = 0.; ///< still to be met at the last iterate, relative
