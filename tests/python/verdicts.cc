@@ -1,5 +1,6 @@
-// verdicts CASE.prm: for each "Section/Key=value" of the standard input one line with what the program says to this case with
-// this value: "taken", or the error. One start for hundreds of values, which --validate would need one by one.
+// verdicts CASE.prm: for each "Section/Key=value" of the standard input one line with what the program says to this
+// case with this value: "taken", or the error. One start for hundreds of values, which --validate would need one by
+// one.
 #include <nodus/parameters/parameters.h>
 
 #include <algorithm>
@@ -12,18 +13,18 @@ int main(int argc, char *argv[])
     return 2;
   std::string assignment;
   while (std::getline(std::cin, assignment))
+  {
+    std::string verdict = "taken";
+    try
     {
-      std::string verdict = "taken";
-      try
-        {
-          Nodus::Parameters::read(argv[1], {assignment});
-        }
-      catch (const Nodus::InputError &error)
-        {
-          verdict = error.what();
-          std::replace(verdict.begin(), verdict.end(), '\n', ' ');
-        }
-      std::cout << verdict << '\n';
+      Nodus::Parameters::read(argv[1], {assignment});
     }
+    catch (const Nodus::InputError &error)
+    {
+      verdict = error.what();
+      std::replace(verdict.begin(), verdict.end(), '\n', ' ');
+    }
+    std::cout << verdict << '\n';
+  }
   return 0;
 }
