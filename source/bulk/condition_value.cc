@@ -35,6 +35,7 @@ namespace Nodus
     private:
       std::function<double(const Point &, double, unsigned int)> function_;
     };
+
     /// Expressions of x, y, z, t and `table`, the value of a table at time t. Between two of its times that is linear
     /// in t, which takes its place in the expressions.
     class TableFunction : public Function<dim>

@@ -81,11 +81,11 @@ namespace Nodus
                          std::vector<std::string> &expressions,
                          const std::string        &documentation);
 
-    /// Keys "Translation", "Rotation", "Rotation axis", "Rotation centre" behind @p prefix. @p axis, @p centre: what
-    /// counts where none are given.
-    /// "Active from" and "Active until"; @p what acts, and what is so from the latter on.
+    /// Keys "Active from" and "Active until". @p what acts, and what is so @p after the latter.
     void add_active_time(ParameterHandler &prm, ActiveTime &time, const std::string &what, const std::string &after);
 
+    /// Keys "Translation", "Rotation", "Rotation axis", "Rotation centre" behind @p prefix. @p axis, @p centre: what
+    /// counts where none are given.
     void add_motion(ParameterHandler           &prm,
                     const std::string          &prefix,
                     PrescribedMotionParameters &motion,
