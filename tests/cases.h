@@ -60,7 +60,8 @@ namespace Cases
   region(const unsigned int body, const std::vector<unsigned int> &ids, const std::string &where = "")
   {
     RegionParameters r;
-    r.body = body;
+    if (body > 0)
+      r.bodies = {body};
     r.boundary_ids.assign(ids.begin(), ids.end());
     r.where = where;
     return r;

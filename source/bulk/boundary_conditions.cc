@@ -31,8 +31,8 @@ namespace Nodus
 
     std::string describe(const RegionParameters &region)
     {
-      const std::string text = region.body == 0 ? "any body" : "body " + std::to_string(region.body);
-      return text + (region.has_ids() ? ", boundary ids " + region.ids_text() : "");
+      return (region.bodies.empty() ? "any body" : region.bodies_text()) +
+             (region.has_ids() ? ", boundary ids " + region.ids_text() : "");
     }
 
     /// Throws, everywhere, for the first condition of which no rank found a @p what.
@@ -102,11 +102,11 @@ namespace Nodus
       {
         driven_[b] = !body_parameters[b].rigid_free.empty();
         BoundaryConditionParameters condition;
-        condition.name        = bodies.name(b);
-        condition.type        = Type::rigid_motion;
-        condition.region.body = b + 1;
-        condition.components  = {0, 1, 2};
-        condition.motion      = body_parameters[b].motion;
+        condition.name          = bodies.name(b);
+        condition.type          = Type::rigid_motion;
+        condition.region.bodies = {b + 1};
+        condition.components    = {0, 1, 2};
+        condition.motion        = body_parameters[b].motion;
         parameters_.push_back(condition);
       }
     for (unsigned int n = 0; n < parameters_.size(); ++n)
@@ -151,14 +151,14 @@ namespace Nodus
   {
     const std::string &name = parameters_[condition].name;
     if (condition >= n_given_)
-      return "Rigid body " + std::to_string(parameters_[condition].region.body) + " ('" + name + "')";
+      return "Rigid body " + std::to_string(parameters_[condition].region.first_body()) + " ('" + name + "')";
     return "Boundary condition " + std::to_string(condition + 1) + (name.empty() ? "" : " ('" + name + "')");
   }
 
   /// The condition is the motion of a rigid body with free components.
   bool BoundaryConditions::is_driven(const unsigned int condition) const
   {
-    return condition >= n_given_ && driven_[parameters_[condition].region.body - 1];
+    return condition >= n_given_ && driven_[parameters_[condition].region.first_body() - 1];
   }
 
   void BoundaryConditions::add_loads()
@@ -171,7 +171,7 @@ namespace Nodus
         const bool       on_cells = parameters_[n].type == Type::body_force;
         RegionParameters where    = parameters_[n].region;
         if (on_cells)
-          where = {where.body, {}, where.where};
+          where = {where.bodies, {}, where.where};
         Load load{&parameters_[n], label(n), Region(where, bodies_, label(n)), functions_[n].get()};
         for (const auto &cell : dof_handler_.active_cell_iterators())
           if (cell->is_locally_owned())
@@ -264,7 +264,7 @@ namespace Nodus
           {
             cell->get_dof_indices(dofs);
             for (unsigned int a = 0; a < scalar_fe.n_dofs_per_cell(); ++a)
-              if (whole_body && cell->material_id() + 1 == parameters_[n].region.body)
+              if (whole_body && parameters_[n].region.has_body(cell->material_id() + 1))
                 take(cell, a);
             for (const auto face : cell->face_indices())
               if (!whole_body && region.contains_face(cell, face))

@@ -114,7 +114,7 @@ namespace Nodus
       const unsigned int n_columns = face.nodes.size() + 2;
       for (unsigned int a = 0; a < face.slaves.size(); ++a)
       {
-        const unsigned int k = surfaces.slave_number(surfaces.node(face.slaves[a]));
+        const unsigned int k = surfaces.slave_number(face.pair, surfaces.node(face.slaves[a]));
         if (!surfaces.is_owned(k))
           continue;
         AveragedJump::Row  &row = rows[k];

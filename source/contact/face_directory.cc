@@ -59,6 +59,7 @@ namespace Nodus
             record.side        = side;
             record.rank        = rank_;
             record.cell        = cell->active_cell_index();
+            record.body        = cell->material_id() + 1;
             for (unsigned int i = 0; i < base.n_dofs_per_cell(); ++i)
               if (std::abs(support_points[i][normal] - f % 2) < 1e-12)
               {

@@ -31,6 +31,7 @@ namespace Nodus
     unsigned int pair, side, rank;
     unsigned int number; ///< in its pair and side, in the order of the cells, which does not depend on the ranks
     unsigned int cell;   ///< active cell index on the rank that owns it
+    unsigned int body;   ///< its number, from 1
 
     /// Node n hangs; one of the nodes that it follows.
     struct Follower
@@ -59,7 +60,7 @@ namespace Nodus
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)
     {
-      archive &dofs &X &orientation &pair &side &rank &number &cell &followers;
+      archive &dofs &X &orientation &pair &side &rank &number &cell &body &followers;
     }
     bool operator<(const FaceRecord &other) const
     {

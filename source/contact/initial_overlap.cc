@@ -117,9 +117,8 @@ namespace Nodus
                              const Vector                             &u,
                              const double                              t)
   {
-    const auto body_of = [&](const unsigned int p, const SurfaceSide side)
-    { return (side == slave_side ? pairs[p].slave : pairs[p].master).body - 1; };
-    const auto          other = [](const SurfaceSide side) { return side == slave_side ? master_side : slave_side; };
+    const auto opposite = [&](const unsigned int p, const SurfaceSide side) -> const std::vector<unsigned int> &
+    { return (side == slave_side ? pairs[p].master : pairs[p].slave).bodies; };
     std::vector<double> limits;
     for (unsigned int p = 0; p < pairs.size(); ++p)
       limits.push_back(overlap_limit(pairs[p], surfaces, p));
@@ -131,7 +130,9 @@ namespace Nodus
                                                   limits,
                                                   [&](const unsigned int p, const SurfaceSide side)
                                                   {
-                                                    auto box = bodies.bounding_box(body_of(p, other(side)));
+                                                    auto box = bodies.bounding_box(opposite(p, side).front() - 1);
+                                                    for (const unsigned int body : opposite(p, side))
+                                                      box.merge_with(bodies.bounding_box(body - 1));
                                                     box.extend(motion);
                                                     return box;
                                                   });
@@ -143,19 +144,21 @@ namespace Nodus
     if (dealii::Utilities::MPI::sum(static_cast<unsigned int>(nodes.size()), communicator) == 0)
       return;
     std::vector<Point>        points;
-    std::vector<unsigned int> body;
-    for (const DeepNode &node : nodes)
-    {
-      points.push_back(node.ahead); // where a cell of its own body would be found as well, no other one is looked for
-      body.push_back(body_of(node.pair, other(node.side)));
-    }
+    std::vector<unsigned int> body, node_of_point;
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      for (const unsigned int number : opposite(nodes[i].pair, nodes[i].side))
+      {
+        points.push_back(
+            nodes[i].ahead); // where a cell of its own body would be found, too, no other one is looked for
+        body.push_back(number - 1);
+        node_of_point.push_back(i);
+      }
     const std::vector<char> inside  = are_inside(points, body, bodies, mapping);
     double                  deepest = 0.;
     std::string             text;
-    for (unsigned int i = 0; i < nodes.size(); ++i)
-      if (inside[i] && nodes[i].depth > deepest)
+    for (unsigned int i = 0; i < points.size(); ++i)
+      if (const DeepNode &node = nodes[node_of_point[i]]; inside[i] && node.depth > deepest)
       {
-        const DeepNode    &node = nodes[i];
         std::ostringstream message;
         deepest = node.depth;
         message << overlap_at(t) << (node.side == slave_side ? "slave" : "master") << " node " << coordinates(node.x)

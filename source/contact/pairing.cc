@@ -92,7 +92,7 @@ namespace Nodus
             const auto &nodes = geometry.slave[p].face(f).nodes;
             for (unsigned int n = 0; n < nodes.size(); ++n)
             {
-              const unsigned int k = surfaces.slave_number(nodes[n]);
+              const unsigned int k = surfaces.slave_number(p, nodes[n]);
               if (k == dealii::numbers::invalid_unsigned_int)
                 continue; // hangs
               x[k] = geometry.slave[p].positions()[nodes[n]];

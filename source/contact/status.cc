@@ -19,6 +19,8 @@ namespace Nodus
     constexpr double initial_gap = 1e-6;
     /// Distance in face sizes up to which tied and bilateral pairs start closed.
     constexpr double tying_distance = 0.1;
+    /// Elastic slip in face sizes of nodes that are slaves of several pairs.
+    constexpr double shared_elastic_slip = 1e-6;
 
     using ContactLaw  = ContactPairParameters::ContactLaw;
     using Overclosure = ContactPairParameters::InitialOverclosure;
@@ -58,6 +60,14 @@ namespace Nodus
       if (const FrictionLaw *const law = limits_[surfaces.pair(k)].own_law())
         now_.friction_state[k] = law->initial_state();
     slip_length_.assign(n, 0.);
+    for (unsigned int k = 0; k < surfaces.slave_nodes().size(); ++k)
+    {
+      const double own = pairs[surfaces.pair(k)].elastic_slip;
+      elastic_slip_.push_back(own == 0. && surfaces.is_owned(k) && surfaces.shares_node(k)
+                                  ? shared_elastic_slip * surfaces.face_size(surfaces.pair(k))
+                                  : own);
+    }
+    surfaces.slave_exchange().update(elastic_slip_);
   }
 
   double Status::closing_distance(const unsigned int pair) const

@@ -140,18 +140,21 @@ namespace Nodus
              std::max(-threshold, threshold_floor_[pair]);
     }
 
-    /// Of the site's pair: null where contact is hard; the slip over which friction reaches its limit [length].
+    /// Of the site's pair: null where contact is hard.
     const PressureGapLaw *pressure_gap_law(const unsigned int site) const
     {
       return gap_laws_[surfaces_.pair(site)].get();
     }
     bool has_elastic_slip() const
     {
-      return std::any_of(pairs_.begin(), pairs_.end(), [](const auto &pair) { return pair.elastic_slip > 0.; });
+      return surfaces_.n_layers() > 1 ||
+             std::any_of(pairs_.begin(), pairs_.end(), [](const auto &pair) { return pair.elastic_slip > 0.; });
     }
+    /// Slip over which friction reaches its limit [length]: that of the pair. Where a node sticks to several masters,
+    /// which hold its three displacements by more constraints than that, next to nothing instead of nothing.
     double elastic_slip(const unsigned int site) const
     {
-      return pairs_[surfaces_.pair(site)].elastic_slip;
+      return site < elastic_slip_.size() ? elastic_slip_[site] : pairs_[surfaces_.pair(site)].elastic_slip;
     }
 
     /// Gap up to which sites of a pair start closed [length].
@@ -316,7 +319,8 @@ namespace Nodus
     std::vector<std::shared_ptr<const PressureGapLaw>> gap_laws_;
     State                                             &now_;
     std::vector<double>                                threshold_slope_; ///< of the sites
-    std::vector<double>                                slip_length_; ///< of the sites, accumulated up to the iterate
+    std::vector<double>                                slip_length_;  ///< of the sites, accumulated up to the iterate
+    std::vector<double>                                elastic_slip_; ///< of the slave nodes
     std::vector<double>                                threshold_floor_; ///< of the pairs
     std::vector<double>                                resolved_;        ///< interference, of the pairs
     std::vector<StatusLedger>                          ledger_;

@@ -47,7 +47,7 @@ namespace Nodus
         directory_.collect(Region(pairs[p].master, bodies, pair_label(pairs, p) + ", master"), mapping, p, master_side);
     }
     directory_.publish();
-    throw_everywhere<InputError>(overlap(), communicator_);
+    throw_everywhere<InputError>(repeated_slave_face(), communicator_);
     for (unsigned int p = 0; p < pairs.size(); ++p)
       for (const auto side : {slave_side, master_side})
         if (directory_.size(p, side) == 0 && (side == slave_side || !rigid_masters_[p]))
@@ -56,6 +56,8 @@ namespace Nodus
                            " boundary ids' and '" + (side == slave_side ? "Slave" : "Master") + " where'");
 
     take_slave_faces();
+    throw_everywhere<InputError>(refused_meeting(), communicator_);
+    find_layers();
     take_carriers(bodies, dof_handler);
     make_points();
     throw_everywhere<InputError>(repeated_face(), communicator_);
@@ -71,44 +73,6 @@ namespace Nodus
     measure_faces();
     if (dealii::Utilities::MPI::n_mpi_processes(communicator_) > 1 && n_pairs() > 0)
       fetch(std::vector<Vector3>(nodes_.size()));
-  }
-
-  /// Message for a node of this rank that is slave in two pairs, or nothing.
-  std::string ContactSurfaces::overlap() const
-  {
-    std::unordered_map<DoFIndex, unsigned int> pair_of_node;
-    for (const FaceRecord &face : directory_.at_own_nodes())
-      for (unsigned int n = 0; n < (degree_ + 1) * (degree_ + 1) && face.side == slave_side; ++n)
-        if (face.hangs(n))
-          continue;
-        else if (const unsigned int other = pair_of_node.emplace(face.dofs[n][0], face.pair).first->second;
-                 other != face.pair && directory_.owner(face.dofs[n][0]) == rank_)
-          return pair_label(pairs_, std::min(other, face.pair)) + " and " +
-                 pair_label(pairs_, std::max(other, face.pair)) + " overlap: node (" + std::to_string(face.X[n][0]) +
-                 ", " + std::to_string(face.X[n][1]) + ", " + std::to_string(face.X[n][2]) +
-                 ") is slave in both; make the slave regions disjoint with 'Slave where' or join the pairs";
-    return "";
-  }
-
-  /// Message for a face of this rank that is slave and master of the same pair, or nothing.
-  std::string ContactSurfaces::repeated_face() const
-  {
-    const unsigned int n_face_nodes = (degree_ + 1) * (degree_ + 1);
-    for (unsigned int p = 0; p < n_pairs(); ++p)
-      for (const FaceRecord &face : directory_.own(p, master_side))
-      {
-        bool slave = true;
-        for (unsigned int n = 0; n < n_face_nodes && slave; ++n)
-        {
-          const auto at = node_of_dof_.find(face.dofs[n][0]);
-          slave         = at != node_of_dof_.end() &&
-                  (face.hangs(n) || (at->second < sites_.nodes.size() && sites_.nodes[at->second].pair == p));
-        }
-        if (slave)
-          return pair_label(pairs_, p) +
-                 ": a face is both slave and master; give the two sides different boundary ids or bodies";
-      }
-    return "";
   }
 
   /// Unless it is there.
@@ -162,6 +126,7 @@ namespace Nodus
     face.owner       = record.rank;
     face.number      = record.number;
     face.cell        = record.cell;
+    face.body        = record.body;
     for (const auto &follower : record.followers)
     {
       if (face.hanging.empty() || face.hanging.back().n != follower.n)
@@ -173,11 +138,11 @@ namespace Nodus
 
     for (unsigned int n = 0; n < face.nodes.size(); ++n)
       if (!record.hangs(n))
-        face.slaves.push_back(slave_number(face.nodes[n]));
+        face.slaves.push_back(slave_number(record.pair, face.nodes[n]));
     if (record.followers.empty())
       return face;
     for (const auto &follower : record.followers)
-      if (const unsigned int k = slave_number(node(follower.dof));
+      if (const unsigned int k = slave_number(record.pair, node(follower.dof));
           follower.share != 0. && std::find(face.slaves.begin(), face.slaves.end(), k) == face.slaves.end())
         face.slaves.push_back(k);
     const auto column = [&](const unsigned int k)
@@ -186,10 +151,11 @@ namespace Nodus
     face.basis.assign(face.nodes.size() * face.slaves.size(), 0.);
     for (unsigned int n = 0; n < face.nodes.size(); ++n)
       if (!record.hangs(n))
-        face.basis[n * face.slaves.size() + column(slave_number(face.nodes[n]))] = 1.;
+        face.basis[n * face.slaves.size() + column(slave_number(record.pair, face.nodes[n]))] = 1.;
     for (const auto &follower : record.followers)
       if (follower.share != 0.)
-        face.basis[follower.n * face.slaves.size() + column(slave_number(node(follower.dof)))] = follower.share;
+        face.basis[follower.n * face.slaves.size() + column(slave_number(record.pair, node(follower.dof)))] =
+            follower.share;
     return face;
   }
 
@@ -343,11 +309,11 @@ namespace Nodus
     for (unsigned int p = 0; p < pairs_.size(); ++p)
     {
       for (const SurfaceFace &face : slave_faces_[p])
-        take(face.nodes, pairs_[p].slave.body);
+        take(face.nodes, face.body);
       for (const SurfaceFace &face : master_faces_[p])
-        take(face.nodes, pairs_[p].master.body);
+        take(face.nodes, face.body);
       if (const RigidCarrier *const carrier = rigid_masters_[p] ? rigid_masters_[p]->carrier() : nullptr)
-        take(carrier->nodes(), pairs_[p].master.body);
+        take(carrier->nodes(), pairs_[p].master.first_body());
     }
   }
 

@@ -36,7 +36,8 @@ namespace Nodus
     Vector3                                      offset;
   };
 
-  /// A node that carries multipliers.
+  /// What carries multipliers: a node on the slave side of a pair. On an edge where the slave surfaces of two pairs
+  /// meet there is one for each of them.
   struct SlaveNode
   {
     unsigned int node; ///< index into ContactSurfaces::nodes()
@@ -75,8 +76,8 @@ namespace Nodus
   class ContactSurfaces
   {
   public:
-    /// Collective. @p pairs must outlive it. @throws InputError on all ranks: a side without faces, a node that is
-    /// slave twice, a face on both sides of a pair.
+    /// Collective. @p pairs must outlive it. @throws InputError on all ranks: a side without faces, a face that is
+    /// slave twice, slave surfaces of two pairs that meet without an edge, a face on both sides of a pair.
     ContactSurfaces(const std::vector<ContactPairParameters> &pairs,
                     const Bodies                             &bodies,
                     const dealii::DoFHandler<dim>            &dof_handler,
@@ -99,12 +100,12 @@ namespace Nodus
     {
       return acting_[pair];
     }
-    /// The first are the slave nodes, in the order of slave_nodes(), then what else is on slave faces.
+    /// The first are those of slave_nodes(), in their order, then what else is on slave faces.
     const std::vector<SurfaceNode> &nodes() const
     {
       return nodes_;
     }
-    /// Those of this rank come first, in the order of their multipliers.
+    /// Those of this rank come first, in the order of their multipliers; those of one node follow each other.
     const std::vector<SlaveNode> &slave_nodes() const
     {
       return sites_.nodes;
@@ -148,8 +149,7 @@ namespace Nodus
                             : nodes_[sites_.nodes[site].node].owner;
     }
     /// Reference position of a site.
-    Point site_position(unsigned int site) const;
-
+    Point        site_position(unsigned int site) const;
     unsigned int n_owned_slave_nodes() const
     {
       return sites_.n_owned_nodes;
@@ -193,10 +193,29 @@ namespace Nodus
     {
       return directory_.size(pair, side);
     }
-    /// Index into slave_nodes() of a surface node, or invalid_unsigned_int.
-    unsigned int slave_number(const unsigned int node) const
+    /// Index into slave_nodes() of a surface node on the slave side of a pair, or invalid_unsigned_int.
+    unsigned int slave_number(const unsigned int pair, const unsigned int node) const
     {
-      return node < sites_.nodes.size() ? node : dealii::numbers::invalid_unsigned_int;
+      if (node + 1 < sites_.first_of_node.size())
+        for (unsigned int k = sites_.first_of_node[node]; k < sites_.first_of_node[node + 1]; ++k)
+          if (sites_.nodes[k].pair == pair)
+            return k;
+      return dealii::numbers::invalid_unsigned_int;
+    }
+    /// Whether an own slave node has multipliers of other pairs, too.
+    bool shares_node(const unsigned int slave) const
+    {
+      const unsigned int node = sites_.nodes[slave].node;
+      return sites_.first_of_node[node + 1] - sites_.first_of_node[node] > 1;
+    }
+    /// Pairs whose slave surfaces meet are in different layers; 0, ..., in most models one for all.
+    const std::vector<unsigned int> &layers() const
+    {
+      return sites_.layers;
+    }
+    unsigned int n_layers() const
+    {
+      return sites_.layers.empty() ? 1 : 1 + *std::max_element(sites_.layers.begin(), sites_.layers.end());
     }
     /// Calls f(node, weight) for the free nodes that make up @p weight times the displacement of a node.
     template <typename Function>
@@ -317,10 +336,12 @@ namespace Nodus
     std::vector<Point> reference_positions() const;
 
   private:
-    std::string overlap() const;
+    std::string repeated_slave_face() const;
+    std::string refused_meeting() const;
     std::string repeated_face() const;
     void        measure_faces();
     void        take_slave_faces();
+    void        find_layers();
     void        take_carriers(const Bodies &bodies, const dealii::DoFHandler<dim> &dof_handler);
     void        make_points();
     void        number_sites();
@@ -337,13 +358,15 @@ namespace Nodus
     /// The places with a jump, a frame and statuses, and what carries multipliers.
     struct Sites
     {
-      std::vector<SlaveNode>  nodes; ///< those of this rank first
-      unsigned int            n_owned_nodes = 0;
-      std::vector<SlavePoint> points;
-      std::vector<char>       has_points; ///< of each pair: its statuses are those of points
-      std::vector<DoFIndex>   multiplier; ///< of each slave node
-      std::vector<DoFIndex>   order;      ///< of each site, complete for owned ones
-      GhostExchange           node_exchange, exchange;
+      std::vector<SlaveNode>    nodes;         ///< those of this rank first
+      std::vector<unsigned int> first_of_node; ///< of each node that has some; ends with the number of all
+      std::vector<unsigned int> layers;        ///< of each pair
+      unsigned int              n_owned_nodes = 0;
+      std::vector<SlavePoint>   points;
+      std::vector<char>         has_points; ///< of each pair: its statuses are those of points
+      std::vector<DoFIndex>     multiplier; ///< of each slave node
+      std::vector<DoFIndex>     order;      ///< of each site, complete for owned ones
+      GhostExchange             node_exchange, exchange;
     };
     /// Displacements that are not unknowns of their own: prescribed ones, and those of driven rigid bodies.
     struct Held

@@ -17,6 +17,7 @@ namespace Nodus
     unsigned int              owner;       ///< rank of the cell
     unsigned int              number = 0;  ///< in its pair and side on all ranks
     unsigned int              cell   = 0;  ///< active cell index on its owner
+    unsigned int              body   = 0;  ///< its number, from 1
 
     /// A node of the face that hangs, and what it follows: indices into ContactSurfaces::nodes(), and weights.
     struct Follower

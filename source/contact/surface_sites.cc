@@ -1,4 +1,5 @@
 #include "contact/face_rule.h"
+#include "contact/friction_limit.h"
 #include "contact/surface.h"
 #include "parallel/all_gather.h"
 
@@ -6,8 +7,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <set>
+#include <tuple>
 
-// The sites of the slave side: nodes and points, and their numbers.
+// The sites of the slave side: nodes and points, their numbers, and what surfaces must not have in common.
 
 namespace Nodus
 {
@@ -15,6 +19,13 @@ namespace Nodus
   {
     /// Sites are numbered by face and place on the face; no rule has as many points.
     constexpr DoFIndex places_on_face = 1024;
+    /// Slave surfaces of two pairs may meet at an edge whose sides are turned by 30 degrees or more.
+    constexpr double smooth_seam_cosine = 0.866;
+
+    std::string coordinates(const double *const X)
+    {
+      return std::to_string(X[0]) + ", " + std::to_string(X[1]) + ", " + std::to_string(X[2]);
+    }
   } // namespace
 
   void ContactSurfaces::take_slave_faces()
@@ -52,19 +63,47 @@ namespace Nodus
     std::stable_sort(places.begin(),
                      places.end(),
                      [](const Place &a, const Place &b)
-                     { return std::make_pair(a.ghost, a.dof) < std::make_pair(b.ghost, b.dof); });
+                     { return std::tie(a.ghost, a.dof, a.pair) < std::tie(b.ghost, b.dof, b.pair); });
     for (const Place &place : places)
-      if (nodes_.empty() || nodes_.back().dofs[0] != place.dof)
+    {
+      const bool new_node = nodes_.empty() || nodes_.back().dofs[0] != place.dof;
+      if (!new_node && sites_.nodes.back().pair == place.pair)
+        continue;
+      if (new_node)
       {
-        sites_.nodes.push_back({static_cast<unsigned int>(nodes_.size()), place.pair});
+        sites_.first_of_node.push_back(sites_.nodes.size());
         add_node(place.dof, place.X);
-        sites_.n_owned_nodes += !place.ghost;
       }
+      sites_.nodes.push_back({static_cast<unsigned int>(nodes_.size() - 1), place.pair});
+      sites_.n_owned_nodes += !place.ghost;
+    }
+    sites_.first_of_node.push_back(sites_.nodes.size());
     for (const FaceRecord &record : records)
       add_nodes(record);
     link_followers(records);
     for (const FaceRecord &record : records)
       slave_faces_[record.pair].push_back(make_face(record));
+  }
+
+  /// The first layer for each pair that no earlier pair that it meets has.
+  void ContactSurfaces::find_layers()
+  {
+    std::vector<unsigned int> meet(n_pairs() * n_pairs(), 0);
+    for (unsigned int k = 1; k < sites_.nodes.size(); ++k)
+      for (unsigned int l = k; l-- > 0 && sites_.nodes[l].node == sites_.nodes[k].node;)
+        meet[sites_.nodes[k].pair * n_pairs() + sites_.nodes[l].pair] = 1;
+    dealii::Utilities::MPI::max(meet, communicator_, meet);
+    for (unsigned int p = 0; p < n_pairs(); ++p)
+    {
+      std::set<unsigned int> taken;
+      for (unsigned int q = 0; q < p; ++q)
+        if (meet[p * n_pairs() + q] + meet[q * n_pairs() + p] > 0)
+          taken.insert(sites_.layers[q]);
+      unsigned int layer = 0;
+      while (taken.count(layer) == 1)
+        ++layer;
+      sites_.layers.push_back(layer);
+    }
   }
 
   /// Their nodes are among those of every rank.
@@ -74,7 +113,7 @@ namespace Nodus
     {
       if (!pairs_[p].has_carried_master())
         continue;
-      RigidCarrier                                    carrier(bodies, pairs_[p].master.body - 1, dof_handler);
+      RigidCarrier                                    carrier(bodies, pairs_[p].master.first_body() - 1, dof_handler);
       std::array<unsigned int, RigidCarrier::n_nodes> nodes;
       for (unsigned int i = 0; i < nodes.size(); ++i)
       {
@@ -112,7 +151,7 @@ namespace Nodus
       {
         const DoFIndex first = (first_face + face.number) * places_on_face;
         for (unsigned int n = 0; n < face.nodes.size(); ++n)
-          if (const unsigned int k = slave_number(face.nodes[n]); k != dealii::numbers::invalid_unsigned_int)
+          if (const unsigned int k = slave_number(p, face.nodes[n]); k != dealii::numbers::invalid_unsigned_int)
             sites_.order[k] = std::min(sites_.order[k], first + n);
         for (unsigned int q = 0; q < n_points; ++q)
           sites_.order[site++] = first + q;
@@ -122,16 +161,15 @@ namespace Nodus
 
     std::vector<DoFIndex>     key;
     std::vector<unsigned int> owner;
+    DoFIndex                  largest = 0;
     for (const SlaveNode &slave : sites_.nodes)
     {
-      key.push_back(nodes_[slave.node].dofs[0]);
+      key.push_back(nodes_[slave.node].dofs[0] / dim * n_layers() + layers()[slave.pair]);
       owner.push_back(nodes_[slave.node].owner);
+      largest = std::max(largest, key.back());
     }
     sites_.node_exchange = GhostExchange(key, owner, communicator_);
-    DoFIndex largest     = 0;
-    for (const SlaveNode &slave : sites_.nodes)
-      largest = std::max(largest, nodes_[slave.node].dofs[0]);
-    largest = dealii::Utilities::MPI::max(largest, communicator_);
+    largest              = dealii::Utilities::MPI::max(largest, communicator_);
     for (unsigned int s = sites_.nodes.size(); s < n_sites(); ++s)
     {
       key.push_back(largest + 1 + sites_.order[s]);
@@ -158,11 +196,85 @@ namespace Nodus
     layout_.n_u           = owned_dofs.size();
     layout_.n_slave_nodes = n;
     for (unsigned int k = 0; k < sites_.n_owned_nodes; ++k)
-      layout_.slave_nodes.push_back(nodes_[k].dofs[0] / dim);
+      layout_.slave_nodes.push_back(nodes_[sites_.nodes[k].node].dofs[0] / dim);
     layout_.owned[0] = owned_dofs;
     layout_.owned[1].set_size(n);
     layout_.owned[1].add_range(first, first + sites_.n_owned_nodes);
     layout_.owned[2].set_size(2 * n);
     layout_.owned[2].add_range(2 * first, 2 * (first + sites_.n_owned_nodes));
+  }
+
+  /// Message for a face of this rank that is slave in two pairs, or nothing.
+  std::string ContactSurfaces::repeated_slave_face() const
+  {
+    const unsigned int n_face_nodes = (degree_ + 1) * (degree_ + 1);
+    using Ends                      = std::pair<DoFIndex, DoFIndex>; // of a diagonal
+    std::map<Ends, unsigned int> pair_of_face;
+    for (unsigned int p = 0; p < n_pairs(); ++p)
+      for (const FaceRecord &face : directory_.own(p, slave_side))
+        if (const unsigned int other =
+                pair_of_face.emplace(Ends(face.dofs[0][0], face.dofs[n_face_nodes - 1][0]), p).first->second;
+            other != p)
+          return pair_label(pairs_, other) + " and " + pair_label(pairs_, p) + " overlap: the face at node (" +
+                 coordinates(face.X[0]) +
+                 ") is slave in both; make the slave regions disjoint with 'Slave where', join the pairs, or give one "
+                 "pair both masters, as in 'Master body = 2, 3'";
+    return "";
+  }
+
+  /// Message for a node of this rank where the slave surfaces of two pairs must not meet, or nothing: without an edge
+  /// the two constraints would say the same, and where nodes share points, friction could not be told from them.
+  std::string ContactSurfaces::refused_meeting() const
+  {
+    const std::vector<Point> X = reference_positions();
+    std::vector<Vector3>     normal(sites_.nodes.size());
+    for (unsigned int p = 0; p < n_pairs(); ++p)
+      for (const SurfaceFace &face : slave_faces_[p])
+      {
+        const Vector3 area = face.orientation * FaceGeometry(face, FaceShape(degree_, 0.5, 0.5), X).area_vector();
+        for (const unsigned int k : face.slaves)
+          normal[k] += area;
+      }
+    const auto rubs_in_points = [&](const unsigned int slave)
+    {
+      const ContactPairParameters &pair = pairs_[sites_.nodes[slave].pair];
+      return FrictionLimit(pair, 0.).exists() && (pair.scheme == ContactPairParameters::Scheme::integration_point ||
+                                                  pair.weights == ContactPairParameters::Weights::consistent);
+    };
+    for (unsigned int k = 1; k < sites_.n_owned_nodes; ++k)
+      for (unsigned int l = k; l-- > 0 && sites_.nodes[l].node == sites_.nodes[k].node;)
+      {
+        const bool smooth = normal[k] * normal[l] > smooth_seam_cosine * normal[k].norm() * normal[l].norm();
+        if (!smooth && !rubs_in_points(k) && !rubs_in_points(l))
+          continue;
+        return pair_label(pairs_, sites_.nodes[l].pair) + " and " + pair_label(pairs_, sites_.nodes[k].pair) +
+               " meet at node (" + coordinates(&nodes_[sites_.nodes[k].node].X[0]) + "), which is slave in both, " +
+               (smooth ? "without an edge there; join the pairs, give one pair both masters, as in 'Master body = 2, "
+                         "3', or leave faces between them out with 'Slave where'"
+                       : "where friction with 'Scheme = integration point' or 'Weights = consistent' cannot be told "
+                         "from the other constraint; set 'Scheme = averaged' with other weights");
+      }
+    return "";
+  }
+
+  /// Message for a face of this rank that is slave and master of the same pair, or nothing.
+  std::string ContactSurfaces::repeated_face() const
+  {
+    const unsigned int n_face_nodes = (degree_ + 1) * (degree_ + 1);
+    for (unsigned int p = 0; p < n_pairs(); ++p)
+      for (const FaceRecord &face : directory_.own(p, master_side))
+      {
+        bool slave = true;
+        for (unsigned int n = 0; n < n_face_nodes && slave; ++n)
+        {
+          const auto at = node_of_dof_.find(face.dofs[n][0]);
+          slave         = at != node_of_dof_.end() &&
+                  (face.hangs(n) || slave_number(p, at->second) != dealii::numbers::invalid_unsigned_int);
+        }
+        if (slave)
+          return pair_label(pairs_, p) +
+                 ": a face is both slave and master; give the two sides different boundary ids or bodies";
+      }
+    return "";
   }
 } // namespace Nodus

@@ -209,7 +209,7 @@ namespace Nodus
         std::vector<unsigned int> places;
         for (unsigned int n = 0; n < face.nodes.size(); ++n)
         {
-          const unsigned int node = face.nodes[n], k = surfaces.slave_number(node);
+          const unsigned int node = face.nodes[n], k = surfaces.slave_number(pair, node);
           if (k != dealii::numbers::invalid_unsigned_int)
             places.push_back(place_of_slave[k]);
           else

@@ -4,6 +4,7 @@
 #include "parameters/expression.h"
 #include "parameters/physical_names.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -37,15 +38,16 @@ namespace Nodus
 
   void Region::refuse_absent(const Bodies &bodies, const std::string &context) const
   {
-    const unsigned int body = parameters_.body;
-    if (body > bodies.size())
-      throw InputError(context + ": there is no body " + std::to_string(body) + "; the bodies are numbered 1 to " +
-                       std::to_string(bodies.size()) + ", and 0 stands for all of them");
+    for (const unsigned int body : parameters_.bodies)
+      if (body < 1 || body > bodies.size())
+        throw InputError(context + ": there is no body " + std::to_string(body) + "; the bodies are numbered 1 to " +
+                         std::to_string(bodies.size()) + ", and 0 stands for all of them");
+    const bool single = parameters_.bodies.size() == 1;
 
     std::map<dealii::types::boundary_id, std::string> present; // with names
     std::set<std::string>                             found;   // names that faces have
     for (unsigned int b = 0; b < bodies.size(); ++b)
-      if (body == 0 || b + 1 == body)
+      if (parameters_.has_body(b + 1))
         for (const auto id : bodies.boundary_ids(b))
         {
           present.emplace(id, named_id(id, bodies.boundary_names(b)));
@@ -58,17 +60,28 @@ namespace Nodus
       for (const auto &[id, text] : present)
         list += (list.empty() ? "" : ", ") + text;
       throw InputError(
-          context + ": no face of " +
-          (body == 0 ? "any body" : "body " + std::to_string(body) + " (" + bodies.name(body - 1) + ")") + " has the " +
-          what + "; ids present: " + list +
+          context + ": no face of " + (parameters_.bodies.empty() ? "any body" : parameters_.bodies_text()) +
+          (single ? " (" + bodies.name(parameters_.first_body() - 1) + ")" : "") + " has the " + what +
+          "; ids present: " + list +
           (present.size() == 1 ? " (a generator numbers the sides when its last argument, colorize, is true)" : ""));
     };
     for (const auto id : parameters_.boundary_ids)
       if (present.count(id) == 0)
-        refuse("boundary id " + (body == 0 ? std::to_string(id) : named_id(id, bodies.boundary_names(body - 1))));
+        refuse("boundary id " +
+               (single ? named_id(id, bodies.boundary_names(parameters_.first_body() - 1)) : std::to_string(id)));
     for (const std::string &name : parameters_.boundary_names)
       if (found.count(name) == 0)
         refuse("name '" + name + "'");
+    for (const unsigned int body : parameters_.bodies)
+    {
+      const auto &ids = bodies.boundary_ids(body - 1);
+      if (parameters_.has_ids() &&
+          std::none_of(ids.begin(), ids.end(), [&](const auto id) { return parameters_.takes(body, id); }))
+        throw InputError(context + ": body " + std::to_string(body) + " (" + bodies.name(body - 1) +
+                         ") has no face with one of the ids " + parameters_.ids_text() +
+                         "; leave it out, or add an id of it, such as " + std::to_string(body) + ':' +
+                         (ids.empty() ? "1" : std::to_string(*ids.begin())));
+    }
   }
 
   void Region::refuse_undefined(const Bodies &bodies, const std::string &context) const

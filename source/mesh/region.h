@@ -17,15 +17,15 @@ namespace dealii
 
 namespace Nodus
 {
-  /// A part of the boundary of one or all bodies: faces by boundary id, thinned by a predicate of the
+  /// A part of the boundary of some or all bodies: faces by boundary id, thinned by a predicate of the
   /// reference coordinates (evaluated at the nodes for nodal conditions, at face centres for the others).
   class Region
   {
   public:
     /// @p context names the subsection in messages, e.g. "Contact pair 1, slave".
-    /// @throws InputError, on every rank, on an unknown body, an id no face of the body has, or a predicate that does
-    /// not parse, or is not a number at a vertex or the centre of a face (without ids: cell) that it thins out.
-    /// Collective.
+    /// @throws InputError, on every rank, on an unknown body, an id no face of the bodies has, a body without any of
+    /// the ids, or a predicate that does not parse, or is not a number at a vertex or the centre of a face (without
+    /// ids: cell) that it thins out. Collective.
     Region(const RegionParameters &parameters, const Bodies &bodies, const std::string &context);
     ~Region();
     Region(Region &&) noexcept;
@@ -42,7 +42,7 @@ namespace Nodus
     template <typename Cell>
     bool contains_cell(const Cell &cell) const
     {
-      return parameters_.body == 0 || cell->material_id() + 1 == parameters_.body;
+      return parameters_.has_body(cell->material_id() + 1);
     }
 
     /// contains_face, and the predicate holds at the centre of the face as @p mapping bends it.

@@ -158,34 +158,96 @@ namespace Nodus
       const Names                          none_;
     };
 
-    /// Of a boundary condition or of one side of a contact pair.
-    void resolve(RegionParameters    &region,
-                 const std::string   &section,
-                 const std::string   &key,
-                 const unsigned int   n_bodies,
-                 Groups              &groups,
-                 const ParameterFile &file)
+    /// A boundary condition or one side of a contact pair, "Slave " or "Master " or nothing before its keys.
+    struct Side
     {
-      if (region.body > n_bodies)
-        return;
+      RegionParameters    &region;
+      const std::string    section, prefix;
+      const ParameterFile &file;
+    };
+
+    /// Numbers for the names of bodies.
+    void resolve_bodies(const Side &side, const std::vector<BodyParameters> &bodies)
+    {
+      for (const std::string &name : side.region.body_names)
+      {
+        const auto body =
+            std::find_if(bodies.begin(), bodies.end(), [&name](const BodyParameters &b) { return b.name == name; });
+        if (body == bodies.end())
+        {
+          std::vector<std::string> names;
+          std::string              list;
+          for (const BodyParameters &b : bodies)
+          {
+            names.push_back(b.name);
+            list +=
+                (list.empty() ? "" : ", ") + std::to_string(names.size()) + (b.name.empty() ? "" : " (" + b.name + ")");
+          }
+          const auto near = nearest(name, names);
+          side.file.refuse(side.section,
+                           prefixed(side.prefix, "Body"),
+                           "names '" + name + "', which no body has as its Name; the bodies are " + list +
+                               (near.empty() ? "" : did_you_mean(near)));
+        }
+        side.region.bodies.push_back(body - bodies.begin() + 1);
+      }
+      side.region.body_names.clear();
+    }
+
+    /// Whether @p item is "2:5" or "lid:inner": an id or a name of one body, which it then adds.
+    bool take_id_of_body(const std::string                 &item,
+                         const Side                        &side,
+                         const std::vector<BodyParameters> &bodies,
+                         Groups                            &groups)
+    {
+      const auto colon = item.find(':');
+      if (colon == std::string::npos)
+        return false;
+      const std::string body = item.substr(0, colon), id = item.substr(colon + 1);
+      for (unsigned int b = 0; b < bodies.size(); ++b)
+        if (body == std::to_string(b + 1) || body == bodies[b].name)
+        {
+          if (!side.region.has_body(b + 1))
+            side.file.refuse(side.section,
+                             prefixed(side.prefix, "Boundary ids"),
+                             "has '" + item + "', but body " + body + " is not in '" + prefixed(side.prefix, "Body") +
+                                 "'; add it there, or remove the id");
+          const auto ids = is_id(id) ? std::vector<unsigned int>{static_cast<unsigned int>(std::stoul(id))}
+                                     : groups.ids(b, Groups::Kind::surface, id);
+          for (const unsigned int i : ids)
+            add_once(i, side.region.ids_of_body[b + 1]);
+          return !ids.empty();
+        }
+      return false;
+    }
+
+    void resolve(const Side &side, const std::vector<BodyParameters> &all, Groups &groups)
+    {
+      RegionParameters         &region = side.region;
       std::vector<unsigned int> bodies;
-      for (unsigned int b = 0; b < n_bodies; ++b)
-        if (region.body == 0 || region.body == b + 1)
+      for (unsigned int b = 0; b < all.size(); ++b)
+        if (region.has_body(b + 1))
           bodies.push_back(b);
+      if (bodies.size() < region.bodies.size())
+        return; // which is the mistake to speak of
+      std::vector<std::string> names;
       for (const std::string &name : region.boundary_names)
       {
         bool found = false;
         for (const unsigned int b : bodies)
           for (const unsigned int id : groups.ids(b, Groups::Kind::surface, name))
           {
-            add_once(id, region.body > 0 ? region.boundary_ids : region.ids_of_body[b + 1]);
+            add_once(id, region.bodies.size() == 1 ? region.boundary_ids : region.ids_of_body[b + 1]);
             found = true;
           }
-        if (!found)
-          file.refuse(section, key, groups.complaint(bodies, Groups::Kind::surface, name));
+        if (found)
+          names.push_back(name);
+        else if (!take_id_of_body(name, side, all, groups))
+          side.file.refuse(side.section,
+                           prefixed(side.prefix, "Boundary ids"),
+                           groups.complaint(bodies, Groups::Kind::surface, name));
       }
-      if (region.body > 0)
-        region.boundary_names.clear();
+      region.boundary_names = region.bodies.size() == 1 ? std::vector<std::string>() : names;
     }
   } // namespace
 
@@ -212,10 +274,38 @@ namespace Nodus
                    });
   }
 
+  void add_bodies(dealii::ParameterHandler &prm,
+                  const std::string        &key,
+                  RegionParameters         &region,
+                  const std::string        &documentation)
+  {
+    prm.declare_entry(key,
+                      region.bodies.empty() ? "0" : joined(region.bodies, region.body_names),
+                      dealii::Patterns::List(IdOrName(), 1, std::numeric_limits<unsigned int>::max(), ","),
+                      documentation);
+    prm.add_action(key,
+                   [&region](const std::string &text)
+                   {
+                     region.bodies.clear();
+                     region.body_names.clear();
+                     const auto items = dealii::Utilities::split_string_list(text, ',');
+                     for (const std::string &item : items)
+                       if (!is_id(item))
+                         region.body_names.push_back(item);
+                       else if (items.size() > 1 || item != "0")
+                         region.bodies.push_back(std::stoul(item));
+                   });
+  }
+
+  bool RegionParameters::has_body(const unsigned int number) const
+  {
+    return bodies.empty() || std::find(bodies.begin(), bodies.end(), number) != bodies.end();
+  }
+
   bool RegionParameters::takes(const unsigned int of_body, const dealii::types::boundary_id id) const
   {
     const auto has = [id](const auto &ids) { return std::find(ids.begin(), ids.end(), id) != ids.end(); };
-    if (body != 0 && body != of_body)
+    if (!has_body(of_body))
       return false;
     const auto own = ids_of_body.find(of_body);
     return has(boundary_ids) || (own != ids_of_body.end() && has(own->second));
@@ -223,12 +313,37 @@ namespace Nodus
 
   std::string RegionParameters::ids_text() const
   {
-    return joined(boundary_ids, boundary_names);
+    std::string text = joined(boundary_ids, boundary_names);
+    for (const auto &[body, ids] : ids_of_body)
+      for (const auto id : ids)
+        if (boundary_names.empty() || bodies.size() > 1)
+          text += (text.empty() ? "" : ", ") + std::to_string(body) + ':' + std::to_string(id);
+    return text;
+  }
+
+  std::string RegionParameters::bodies_text() const
+  {
+    return bodies.empty() ? "every body" : (bodies.size() == 1 ? "body " : "bodies ") + joined(bodies, {});
   }
 
   void resolve_names(Parameters &parameters, const ParameterFile &file)
   {
     auto &bodies = parameters.bodies;
+    // the regions, with what messages say of them
+    const auto for_each_side = [&](const auto &f)
+    {
+      for (unsigned int i = 0; i < parameters.boundary_conditions.size(); ++i)
+        f(Side{parameters.boundary_conditions[i].region, "Boundary condition " + std::to_string(i + 1), "", file},
+          true);
+      for (unsigned int i = 0; i < parameters.contact_pairs.size(); ++i)
+      {
+        ContactPairParameters &pair    = parameters.contact_pairs[i];
+        const std::string      section = "Contact pair " + std::to_string(i + 1);
+        f(Side{pair.slave, section, "Slave ", file}, !pair.slave.bodies.empty());
+        f(Side{pair.master, section, "Master ", file}, !pair.master.bodies.empty() && !pair.has_rigid_master());
+      }
+    };
+    for_each_side([&](const Side &side, bool) { resolve_bodies(side, bodies); });
     for (const BodyParameters &body : bodies)
     {
       std::error_code unknown;
@@ -250,22 +365,11 @@ namespace Nodus
       }
       bodies[b].volume_names.clear();
     }
-    const unsigned int n = bodies.size();
-    for (unsigned int i = 0; i < parameters.boundary_conditions.size(); ++i)
-      resolve(parameters.boundary_conditions[i].region,
-              "Boundary condition " + std::to_string(i + 1),
-              "Boundary ids",
-              n,
-              groups,
-              file);
-    for (unsigned int i = 0; i < parameters.contact_pairs.size(); ++i)
-    {
-      ContactPairParameters &pair    = parameters.contact_pairs[i];
-      const std::string      section = "Contact pair " + std::to_string(i + 1);
-      if (pair.slave.body > 0)
-        resolve(pair.slave, section, "Slave boundary ids", n, groups, file);
-      if (pair.master.body > 0 && !pair.has_rigid_master())
-        resolve(pair.master, section, "Master boundary ids", n, groups, file);
-    }
+    for_each_side(
+        [&](const Side &side, const bool has_faces)
+        {
+          if (has_faces)
+            resolve(side, bodies, groups);
+        });
   }
 } // namespace Nodus

@@ -15,6 +15,7 @@ namespace Nodus
 {
   class ParameterFile;
   struct Parameters;
+  struct RegionParameters;
 
   /// A key whose value is a list of ids and names, separated by commas, which go to @p ids and @p names. Names may
   /// have blanks inside, and are no numbers.
@@ -24,8 +25,15 @@ namespace Nodus
                std::vector<std::string>  &names,
                const std::string         &documentation);
 
+  /// A key "Body": numbers or names of bodies, 0 for every body.
+  void add_bodies(dealii::ParameterHandler &prm,
+                  const std::string        &key,
+                  RegionParameters         &region,
+                  const std::string        &documentation);
+
   /// Replaces all names by the ids that they stand for in the mesh files: each body has its own. Every rank reads the
-  /// names itself, and only where one is asked for. What Parameters::check() refuses is left for it.
+  /// names itself, and only where one is asked for. Names of
+  /// bodies become their numbers. What Parameters::check() refuses is left for it.
   /// @throws InputError, by ParameterFile::refuse(), for a name that the mesh file does not have, or of a body that is
   /// generated.
   void resolve_names(Parameters &parameters, const ParameterFile &file);

@@ -257,6 +257,41 @@ namespace Nodus
       check_names(file, "Output point", p.output_points);
       check_names(file, "Output line", p.output_lines);
     }
+
+    /// The bodies of a pair: with meshes, one side to give way, one rigid body at most whose motion a site moves with.
+    void
+    check_bodies(const Section &section, const ContactPairParameters &pair, const std::vector<BodyParameters> &bodies)
+    {
+      const auto some = [&](const RegionParameters &side, const auto &is)
+      {
+        return std::any_of(
+            side.bodies.begin(), side.bodies.end(), [&](const unsigned int b) { return is(bodies[b - 1]); });
+      };
+      const auto rigid  = [](const BodyParameters &body) { return body.rigid; };
+      const auto driven = [&](const RegionParameters &side)
+      {
+        return std::count_if(side.bodies.begin(),
+                             side.bodies.end(),
+                             [&](const unsigned int b) { return !bodies[b - 1].rigid_free.empty(); });
+      };
+      const auto meshless = [](const BodyParameters &body) { return !body.has_mesh(); };
+      section.require(!some(pair.slave, meshless), "Slave body", "has no mesh; give the number of a body that has one");
+      section.require(pair.has_rigid_master() || !some(pair.master, meshless),
+                      "Master body",
+                      "has no mesh; say what surface it carries with Master surface, or give it a mesh");
+      section.require(!pair.has_carried_master() || some(pair.master, rigid),
+                      "Master body",
+                      "is not rigid and cannot carry a rigid surface; remove it, or set 'Rigid = true' there");
+      section.require(pair.has_rigid_master() || driven(pair.slave) <= 1,
+                      "Slave body",
+                      "has several rigid bodies that forces drive; give each of them a contact pair of its own");
+      section.require(pair.has_rigid_master() || driven(pair.master) <= 1,
+                      "Master body",
+                      "has several rigid bodies that forces drive; give each of them a contact pair of its own");
+      section.require(!some(pair.slave, rigid) || !(pair.has_rigid_master() || some(pair.master, rigid)),
+                      "Slave body",
+                      "is rigid, as is the master: neither can give way; remove the pair");
+    }
   } // namespace
 
   void Parameters::check(const ParameterFile &file) const
@@ -276,10 +311,9 @@ namespace Nodus
       const Section section{file, "Boundary condition " + std::to_string(i + 1)};
       Nodus::check(section, boundary_conditions[i], n_bodies, load_stepping.interval_ends);
       for (unsigned int b = 0; b < n_bodies; ++b)
-        section.require(bodies[b].has_mesh() ||
-                            (boundary_conditions[i].region.body != b + 1 &&
-                             (boundary_conditions[i].region.body > 0 ||
-                              boundary_conditions[i].type != BoundaryConditionParameters::Type::body_force)),
+        section.require(bodies[b].has_mesh() || !boundary_conditions[i].region.has_body(b + 1) ||
+                            (boundary_conditions[i].region.bodies.empty() &&
+                             boundary_conditions[i].type != BoundaryConditionParameters::Type::body_force),
                         "Body",
                         "is or includes body " + std::to_string(b + 1) +
                             ", which has no mesh; leave it out, and drive it by Rigid translation or Rigid force");
@@ -289,31 +323,20 @@ namespace Nodus
       const Section section{file, "Contact pair " + std::to_string(i + 1)};
       Nodus::check(section, contact_pairs[i], n_bodies);
       ParameterChecks::check(section, contact_pairs[i], "pair", load_stepping.interval_ends);
-      const ContactPairParameters &pair   = contact_pairs[i];
-      const BodyParameters        &slave  = bodies[pair.slave.body - 1];
-      const BodyParameters *const  master = pair.master.body > 0 ? &bodies[pair.master.body - 1] : nullptr;
-      section.require(slave.has_mesh(), "Slave body", "has no mesh; give the number of a body that has one");
-      section.require(pair.has_rigid_master() || master->has_mesh(),
-                      "Master body",
-                      "has no mesh; say what surface it carries with Master surface, or give it a mesh");
-      section.require(!pair.has_carried_master() || master->rigid,
-                      "Master body",
-                      "is not rigid and cannot carry a rigid surface; remove it, or set 'Rigid = true' there");
-      section.require(!slave.rigid || !(pair.has_rigid_master() || master->rigid),
-                      "Slave body",
-                      "is rigid, as is the master: neither can give way; remove the pair");
+      const ContactPairParameters &pair = contact_pairs[i];
+      check_bodies(section, pair, bodies);
       for (unsigned int j = 0; j < i; ++j)
         section.require(!share_faces(contact_pairs[i].slave, contact_pairs[j].slave),
                         "Slave boundary ids",
                         "names faces that are already slaves of 'Contact pair " + std::to_string(j + 1) +
-                            "'; a face can be slave only once");
+                            "'; a face can be slave only once, of a master that may have several bodies");
     }
     for (unsigned int b = 0; b < n_bodies; ++b)
       Section{file, "Body " + std::to_string(b + 1)}.require(
           bodies[b].has_mesh() ||
               std::any_of(contact_pairs.begin(),
                           contact_pairs.end(),
-                          [b](const ContactPairParameters &pair) { return pair.master.body == b + 1; }),
+                          [b](const ContactPairParameters &pair) { return pair.master.first_body() == b + 1; }),
           "Mesh file",
           "is missing, and the body carries no surface either; give a mesh, or a contact pair with a Master surface "
           "and 'Master body = " +

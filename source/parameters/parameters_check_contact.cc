@@ -30,9 +30,25 @@ namespace Nodus
                               const unsigned int      smallest_body)
   {
     const std::string choice = (smallest_body == 0 ? "0 (every body) to " : "1 to ") + std::to_string(n_bodies);
-    section.require(region.body >= smallest_body && region.body <= n_bodies,
+    section.require(smallest_body == 0 || !region.bodies.empty(),
                     prefixed(prefix, "Body"),
-                    "is " + std::to_string(region.body) + "; give the number of a body, " + choice);
+                    "is 0; give the number of a body, " + choice);
+    for (const unsigned int body : region.bodies)
+    {
+      section.require(body >= 1 && body <= n_bodies,
+                      prefixed(prefix, "Body"),
+                      (region.bodies.size() == 1 ? "is " : "has ") + std::to_string(body) +
+                          "; give the number of a body, " +
+                          (region.bodies.size() == 1 ? choice : "1 to " + std::to_string(n_bodies)));
+      section.require(std::count(region.bodies.begin(), region.bodies.end(), body) == 1,
+                      prefixed(prefix, "Body"),
+                      "has " + std::to_string(body) + " twice; name each body once");
+    }
+    for (const auto &[body, ids] : region.ids_of_body)
+      section.require(region.has_body(body),
+                      prefixed(prefix, "Boundary ids"),
+                      "has ids of body " + std::to_string(body) + ", which is not in '" + prefixed(prefix, "Body") +
+                          "'");
     if (!region.where.empty())
       check_expression(section, prefixed(prefix, "Where"), region.where, "x,y,z");
   }
@@ -84,9 +100,17 @@ namespace Nodus
 
   bool ParameterChecks::share_faces(const RegionParameters &a, const RegionParameters &b)
   {
-    const auto in_b = [&b](const dealii::types::boundary_id id)
-    { return std::count(b.boundary_ids.begin(), b.boundary_ids.end(), id) > 0; };
-    return a.body == b.body && a.where == b.where && std::any_of(a.boundary_ids.begin(), a.boundary_ids.end(), in_b);
+    if (a.where != b.where)
+      return false;
+    for (const unsigned int body : a.bodies)
+    {
+      const auto in_b = [&](const dealii::types::boundary_id id) { return b.takes(body, id); };
+      const auto own  = a.ids_of_body.find(body);
+      if (std::any_of(a.boundary_ids.begin(), a.boundary_ids.end(), in_b) ||
+          (own != a.ids_of_body.end() && std::any_of(own->second.begin(), own->second.end(), in_b)))
+        return true;
+    }
+    return false;
   }
 
   namespace
@@ -246,9 +270,9 @@ namespace Nodus
                         "has no meaning besides 'Master surface = " + shape +
                             "', which has no mesh; remove one of the two");
       check_shape(section, surface, shape);
-      section.require(pair.master.body <= n_bodies,
+      section.require(pair.master.bodies.size() <= 1 && pair.master.first_body() <= n_bodies,
                       "Master body",
-                      "is " + std::to_string(pair.master.body) +
+                      "is " + pair.master.bodies_text().substr(pair.master.bodies_text().find(' ') + 1) +
                           "; give the number of the rigid body that carries the " + shape + ", 1 to " +
                           std::to_string(n_bodies) + ", or 0 for none");
       section.require(!pair.has_carried_master() || !is_given(surface.motion),

@@ -89,13 +89,19 @@ namespace Nodus
                                  const std::string &every_body,
                                  const std::string &where)
   {
-    prm.add_parameter(prefixed(prefix, "Body"), region.body, "Number of the body [-]" + every_body + ".", count);
+    add_bodies(prm,
+               prefixed(prefix, "Body"),
+               region,
+               "Number or Name of the body [-]" + every_body +
+                   ". Several are separated by commas, e.g. 2, 3 or groove, lid.");
     add_ids(
         prm,
         prefixed(prefix, "Boundary ids"),
         region.boundary_ids,
         region.boundary_names,
-        "Boundary ids of its faces [-], or names of physical surfaces of its mesh file, e.g. 1, 5 or seal_outer, 5.");
+        "Boundary ids of its faces [-], or names of physical surfaces of its mesh file, e.g. 1, 5 or seal_outer, 5. Of "
+        "several bodies each has those of them that it has; an id of one body only is written with its number or Name, "
+        "e.g. 2:5 or lid:inner.");
     prm.add_parameter(prefixed(prefix, "Where"),
                       region.where,
                       "Condition on the reference coordinates x, y, z [length] that thins the faces out, e.g. "

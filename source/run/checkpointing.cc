@@ -270,7 +270,7 @@ namespace Nodus
     std::vector<std::vector<double>> histories(cells.size());
     const auto                       faces = faces_with_points(model_.bodies, surfaces, model_.dof_handler);
 
-    std::vector<Vector>   vectors(n_state_vectors(), Vector(surfaces.layout().owned[0], model_.communicator));
+    std::vector<Vector>   vectors(n_state_vectors(surfaces), Vector(surfaces.layout().owned[0], model_.communicator));
     std::vector<double>   sites(n_site_values() * surfaces.n_sites(), 0.);
     std::vector<DoFIndex> dofs(model_.fe.n_dofs_per_cell());
     std::size_t           missing = cells.size() + faces.size();
@@ -280,6 +280,8 @@ namespace Nodus
       for (const auto &[key, values] : piece.cells)
         if (const auto cell = cells.find(key); cell != cells.end())
         {
+          if (values.size() > vectors.size() * dofs.size())
+            continue; // more pairs meet there
           --missing;
           cell->second.first->get_dof_indices(dofs);
           for (unsigned int i = 0; i < values.size(); ++i)

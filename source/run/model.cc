@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace Nodus
@@ -195,9 +196,11 @@ namespace Nodus
     std::vector<double> stiffness;
     for (const auto &pair : parameters.contact_pairs)
     {
-      stiffness.push_back(materials[pair.slave.body - 1]->youngs_modulus());
-      if (!pair.has_rigid_master())
-        stiffness.back() = std::min(stiffness.back(), materials[pair.master.body - 1]->youngs_modulus());
+      stiffness.push_back(std::numeric_limits<double>::max());
+      for (const RegionParameters *const side : {&pair.slave, &pair.master})
+        for (const unsigned int body : side->bodies)
+          if (side == &pair.slave || !pair.has_rigid_master())
+            stiffness.back() = std::min(stiffness.back(), materials[body - 1]->youngs_modulus());
     }
     return stiffness;
   }
@@ -227,7 +230,7 @@ namespace Nodus
            << surfaces.n_faces(p, slave_side) << " slave faces on ";
       if (const auto &pair = parameters.contact_pairs[p]; pair.has_rigid_master())
         line << "a rigid " << surfaces.rigid_master(p)->describe()
-             << (pair.has_carried_master() ? " of body " + std::to_string(pair.master.body) : "");
+             << (pair.has_carried_master() ? " of " + pair.master.bodies_text() : "");
       else
         line << surfaces.n_faces(p, master_side) << " master faces";
       line << ", mean slave face size " << surfaces.face_size(p);

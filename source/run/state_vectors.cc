@@ -24,6 +24,23 @@ namespace Nodus
       return n_site_values() + widths().slave + dim;
     }
 
+    unsigned int vectors_of_layer()
+    {
+      return (n_slave_numbers() + dim - 1) / dim;
+    }
+
+    /// Of the vectors with the numbers of slave node @p k: each layer of pairs has its own.
+    unsigned int first_vector(const ContactSurfaces &surfaces, const unsigned int k)
+    {
+      return n_displacement_vectors() + surfaces.layers()[surfaces.pair(k)] * vectors_of_layer();
+    }
+
+    /// Place of number @p i of slave node @p k in its vector.
+    DoFIndex dof(const ContactSurfaces &surfaces, const unsigned int k, const unsigned int i)
+    {
+      return surfaces.nodes()[surfaces.slave_nodes()[k].node].dofs[i % dim];
+    }
+
     /// The vectors of a state whose slave nodes have the numbers that @p numbers(k) returns.
     template <typename Numbers>
     std::vector<Vector> as_vectors(const State &state, const ContactInterface &contact, const Numbers &numbers)
@@ -34,13 +51,13 @@ namespace Nodus
       std::vector<Vector> vectors;
       for (const Vector *const v : of_nodes.vectors)
         vectors.push_back(*v);
-      while (vectors.size() < n_state_vectors())
+      while (vectors.size() < n_state_vectors(surfaces))
         vectors.emplace_back(surfaces.layout().owned[0], surfaces.layout().communicator);
       for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
       {
         const std::vector<double> values = numbers(k);
         for (unsigned int i = 0; i < values.size(); ++i)
-          vectors[n_displacement_vectors() + i / dim](surfaces.nodes()[k].dofs[i % dim]) = values[i];
+          vectors[first_vector(surfaces, k) + i / dim](dof(surfaces, k, i)) = values[i];
       }
       for (unsigned int n = n_displacement_vectors(); n < vectors.size(); ++n)
         vectors[n].compress(dealii::VectorOperation::insert);
@@ -53,7 +70,7 @@ namespace Nodus
     {
       std::vector<double> values(n_slave_numbers());
       for (unsigned int i = 0; i < values.size(); ++i)
-        values[i] = vectors[n_displacement_vectors() + i / dim](surfaces.nodes()[k].dofs[i % dim]);
+        values[i] = vectors[first_vector(surfaces, k) + i / dim](dof(surfaces, k, i));
       return values;
     }
 
@@ -161,9 +178,9 @@ namespace Nodus
     return widths().site;
   }
 
-  unsigned int n_state_vectors()
+  unsigned int n_state_vectors(const ContactSurfaces &surfaces)
   {
-    return n_displacement_vectors() + (n_slave_numbers() + dim - 1) / dim;
+    return n_displacement_vectors() + surfaces.n_layers() * vectors_of_layer();
   }
 
   std::vector<double> site_values(const State &state, const unsigned int site)

@@ -7,14 +7,15 @@
 #include <vector>
 
 // A State as vectors like the displacement, which checkpoints and new meshes take over, and back. What a slave node
-// has besides its displacement travels three numbers to a vector, zeros at all other nodes.
+// has besides its displacement travels three numbers to a vector, zeros at all other nodes; pairs whose slave surfaces
+// meet have vectors of their own.
 
 namespace Nodus
 {
   /// Vectors of all nodes, which come first: all that visit_members() calls nodes().
   unsigned int n_displacement_vectors();
   /// Number of vectors.
-  unsigned int n_state_vectors();
+  unsigned int n_state_vectors(const ContactSurfaces &surfaces);
 
   /// Numbers of a contact site: all that visit_members() calls sites().
   unsigned int        n_site_values();

@@ -112,11 +112,7 @@ namespace Nodus
         return std::any_of(pairs.begin(),
                            pairs.end(),
                            [&](const ContactPairParameters &pair)
-                           {
-                             const auto has = [&](const RegionParameters &side)
-                             { return side.body == b + 1 && side.takes(b + 1, id); };
-                             return has(pair.slave) || has(pair.master);
-                           });
+                           { return pair.slave.takes(b + 1, id) || pair.master.takes(b + 1, id); });
       };
       const auto id   = std::find_if_not(ids.begin(), ids.end(), touches);
       const auto ends = model.bodies.bounding_box(b).get_boundary_points();

@@ -78,7 +78,7 @@ namespace Nodus
       Block          D        = Eigen::Map<const Block>(D_inverse_[k].data());
       const DoFIndex node     = system_.slave_nodes()[k];
       const Block    friction = system_.own_coupling(node);
-      if (const auto own = blocks.find(node); own != blocks.end() && !friction.isZero(0.))
+      if (const auto own = blocks.find(node); own != blocks.end() && !friction.isZero(0.) && !system_.shares_node(k))
       {
         const Eigen::Matrix3d inverse = Eigen::Matrix3d(own->second).completeOrthogonalDecomposition().pseudoInverse();
         D += inverse.transpose() * friction * inverse;

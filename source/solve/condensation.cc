@@ -8,15 +8,6 @@
 
 namespace Nodus
 {
-  namespace
-  {
-    using Matrix3 = Eigen::Matrix3d;
-
-    /// A row b of B is a constraint, to working precision, where its stiffness b b^T/c exceeds that of the node this
-    /// many times.
-    constexpr double constraint_stiffness = 1e10;
-  } // namespace
-
   Condensation::Condensation(const SaddlePointOperator &system)
       : system_(system)
       , nodes_(system.bulk().map())
@@ -35,137 +26,12 @@ namespace Nodus
 
   Condensation::~Condensation() = default;
 
-  void Condensation::make_sites()
-  {
-    const CouplingMatrix &B = system_.B(), &C = system_.C();
-    const DoFIndex        first_multiplier = system_.multiplier_ownership().begin();
-    std::string           failure;
-    sites_.resize(system_.slave_nodes().size());
-    for (unsigned int k = 0; k < sites_.size() && failure.empty(); ++k)
-    {
-      Site &site                         = sites_[k];
-      site.node                          = nodes_.local(system_.slave_nodes()[k]);
-      Matrix3                     C_node = Matrix3::Zero();
-      std::map<DoFIndex, Matrix3> blocks;
-      blocks[system_.slave_nodes()[k]].setZero();
-      for (unsigned int a = 0; a < 3; ++a)
-      {
-        C.for_row(3 * k + a,
-                  [&](const unsigned int column, const double value)
-                  {
-                    // as signed numbers: the multiplier may be of a node before this one
-                    const auto b = static_cast<std::int64_t>(C.columns()[column]) -
-                                   static_cast<std::int64_t>(first_multiplier + 3 * k);
-                    if (b >= 0 && b < 3)
-                      C_node(a, b) += value;
-                    else if (value != 0.)
-                      failure = "the multipliers of different slave nodes are coupled";
-                  });
-        B.for_row(3 * k + a,
-                  [&](const unsigned int column, const double value)
-                  {
-                    const DoFIndex dof = B.columns()[column];
-                    blocks.try_emplace(dof / dim, Matrix3::Zero()).first->second(a, dof % dim) += value;
-                  });
-      }
-      const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(C_node);
-      site.turn = eigen.eigenvectors();
-      site.rows.push_back({system_.slave_nodes()[k], site.turn.transpose() * blocks[system_.slave_nodes()[k]]});
-      for (const auto &[node, block] : blocks)
-        if (node != system_.slave_nodes()[k])
-          site.rows.push_back({node, site.turn.transpose() * block});
-      try
-      {
-        classify(site, eigen.eigenvalues().asDiagonal());
-      }
-      catch (const NotCondensable &error)
-      {
-        failure = error.what();
-      }
-    }
-    if (dealii::Utilities::MPI::max(failure.empty() ? 0 : 1, nodes_.communicator()) != 0)
-      throw NotCondensable(failure.empty() ? "another process has constraints that cannot be condensed" : failure);
-    const bool here = std::any_of(sites_.begin(), sites_.end(), [](const Site &site) { return site.has_spring; });
-    has_springs_    = dealii::Utilities::MPI::max(here ? 1 : 0, nodes_.communicator()) != 0;
-  }
-
-  /// Finds the constraints of a site and its basis (theory section 25): directions of the constraints, those of stiff
-  /// rows, prescribed displacements, and what is left.
-  void Condensation::classify(Site &site, const Matrix3 &C) const
-  {
-    const BlockCsrMatrix &K = system_.bulk();
-    for (unsigned int d = 0; d < dim; ++d)
-      site.diagonal += std::abs(K.diagonal(site.node)[4 * d]) / dim;
-    const Matrix3 &own = site.rows.front().block;
-
-    enum class Kind
-    {
-      constraint,
-      stiff,
-      soft
-    } kind[3];
-    for (unsigned int i = 0; i < 3; ++i)
-    {
-      double square = 0.;
-      for (const NodeBlock &coupling : site.rows)
-        square += coupling.block.row(i).squaredNorm();
-      const double c         = C(i, i);
-      const bool   rigid     = square > 0. && constraint_stiffness * std::abs(c) * site.diagonal <= square;
-      const double stiffness = own.row(i).squaredNorm();
-      if (rigid && stiffness < 1e-12 * square)
-        throw NotCondensable("a slave node is held where its contact constraint acts");
-      if (!rigid && square > 0. && c < 0.)
-        throw NotCondensable("a friction law gives way: its compliance is negative");
-      kind[i] = Kind::soft;
-      if (rigid)
-        kind[i] = Kind::constraint;
-      else if (stiffness > c * site.diagonal)
-        kind[i] = Kind::stiff;
-      site.flexibility_inverse[i] = rigid || c == 0. ? 0. : 1. / c;
-      site.has_spring             = site.has_spring || (site.flexibility_inverse[i] != 0. && square > 0.);
-    }
-
-    unsigned int n   = 0;
-    const auto   add = [&](Eigen::Vector3d v, const double tolerance)
-    {
-      const double norm = v.norm();
-      for (unsigned int repeat = 0; repeat < 2; ++repeat)
-        for (unsigned int d = 0; d < n; ++d)
-          v -= site.basis.col(d).dot(v) * site.basis.col(d);
-      if (n == 3 || !(v.norm() > tolerance * norm))
-        return false;
-      site.basis.col(n++) = v.normalized();
-      return true;
-    };
-    for (const Kind wanted : {Kind::constraint, Kind::stiff})
-    {
-      for (unsigned int i = 0; i < 3; ++i)
-        if (kind[i] == wanted)
-        {
-          if (add(own.row(i).transpose(), 1e-6))
-            site.combination[n - 1] = i;
-          else if (wanted == Kind::constraint)
-            throw NotCondensable("the constraints of a slave node depend on each other");
-        }
-      if (wanted == Kind::constraint)
-        site.n_constraints = n;
-    }
-    site.n_directions = n;
-    for (unsigned int d = 0; d < dim; ++d)
-      if (K.decoupled(dim * site.node + d))
-        add(Eigen::Vector3d::Unit(d), 0.999);
-    for (unsigned int d = 0; d < dim; ++d)
-      add(Eigen::Vector3d::Unit(d), 0.4);
-    for (unsigned int d = 0; d < dim && n < dim; ++d)
-      add(Eigen::Vector3d::Unit(d), 1e-3);
-  }
-
   Condensation::Matrix3 Condensation::constraint_inverse(const Site &site, const unsigned int n) const
   {
     Matrix3 H = Matrix3::Identity();
     for (unsigned int d = 0; d < n; ++d)
       for (unsigned int e = 0; e < n; ++e)
-        H(d, e) = site.rows.front().block.row(site.combination[d]).dot(site.basis.col(e));
+        H(d, e) = site.rows.front().block.row(site.combination[d].row).dot(site.basis.col(e));
     Matrix3 inverse = H.inverse();
     for (unsigned int d = n; d < dim; ++d)
       inverse(d, d) = 0.;
@@ -190,7 +56,7 @@ namespace Nodus
         {
           Matrix3 rows = Matrix3::Zero();
           for (unsigned int d = 0; d < site.n_directions; ++d)
-            rows.row(d) = site.rows[k].block.row(site.combination[d]);
+            rows.row(d) = site.rows[k].block.row(site.combination[d].row);
           const Matrix3 N = -combine * rows;
           if (!N.isZero(0.))
             row->others.push_back({site.rows[k].node, N});
@@ -302,10 +168,12 @@ namespace Nodus
     std::vector<Eigen::Vector3d> y(sites_.size(), Eigen::Vector3d::Zero());
     for (unsigned int k = 0; k < sites_.size(); ++k)
     {
-      const Site           &site = sites_[k];
-      const Eigen::Vector3d g    = site.turn.transpose() * Eigen::Map<const Eigen::Vector3d>(g_b + 3 * k);
+      const Site &site = sites_[k];
       for (unsigned int d = 0; d < site.n_constraints; ++d)
-        y[k][d] = g[site.combination[d]];
+      {
+        const auto [from, row] = site.combination[d];
+        y[k][d]                = sites_[from].turn.col(row).dot(Eigen::Map<const Eigen::Vector3d>(g_b + 3 * from));
+      }
       if (!site.coupled)
         y[k] = (constraint_inverse(site, site.n_constraints) * y[k]).eval();
     }
@@ -368,7 +236,10 @@ namespace Nodus
       cluster_->solve(force, true);
     for (unsigned int k = 0; k < sites_.size(); ++k)
       for (unsigned int d = 0; d < sites_[k].n_constraints; ++d)
-        Eigen::Map<Eigen::Vector3d>(m + 3 * k) += force[k][d] * sites_[k].turn.col(sites_[k].combination[d]);
+      {
+        const auto [to, row] = sites_[k].combination[d];
+        Eigen::Map<Eigen::Vector3d>(m + 3 * to) += force[k][d] * sites_[to].turn.col(row);
+      }
   }
 
   void Condensation::transform_modes(std::vector<double> &modes) const

@@ -61,6 +61,11 @@ namespace Nodus
 
   private:
     using Matrix3 = Eigen::Matrix3d;
+    /// A turned row of B.
+    struct TurnedRow
+    {
+      unsigned int site, row;
+    };
     struct Site
     {
       unsigned int           node;                  ///< local, owned
@@ -69,10 +74,10 @@ namespace Nodus
       bool                   has_spring    = false; ///< a compliant row that is not zero
       unsigned int           n_constraints = 0;     ///< the first directions of the basis
       unsigned int           n_directions  = 0;     ///< those and the stiff rows', whose unknowns are jumps
-      unsigned int           combination[3];        ///< the turned row that gives each direction
+      TurnedRow              combination[3];        ///< that gives each direction
       Matrix3                basis;                 ///< columns
       double                 diagonal = 0.;         ///< mean diagonal stiffness of the node
-      bool                   coupled  = false;      ///< to constraints of other slave nodes
+      bool                   coupled  = false;      ///< to constraints of other slave nodes, or of several sites
       std::vector<NodeBlock> rows;                  ///< turned rows of B, the own node first
     };
     /// Row of T: u = own y + sum of block y of others.
@@ -83,7 +88,9 @@ namespace Nodus
     };
 
     void make_sites();
-    void classify(Site &site, const Matrix3 &C) const;
+    void classify(unsigned int k, const Matrix3 &C);
+    bool join_sites_of_nodes();
+    void complete_basis(Site &site, unsigned int n) const;
     void find_coupled_sites();
     void make_rows();
     void make_cluster();
@@ -103,7 +110,7 @@ namespace Nodus
 
     const SaddlePointOperator                   &system_;
     const NodeMap                               &nodes_;
-    std::vector<Site>                            sites_;               ///< of the owned slave nodes
+    std::vector<Site>                            sites_; ///< of the owned slave nodes; one for each node has directions
     bool                                         has_springs_ = false; ///< on any rank
     std::vector<std::unique_ptr<Row>>            rows_;                ///< by local node; null where T is the identity
     std::unique_ptr<ConstraintCluster>           cluster_;

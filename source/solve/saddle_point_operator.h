@@ -87,6 +87,12 @@ namespace Nodus
     void add_coupling(const double *u, double *f) const;
     /// C_uu between the components of an owned node.
     Eigen::Matrix3d own_coupling(DoFIndex node) const;
+    /// Whether other multipliers than those of slave node @p k are at its node, too.
+    bool shares_node(const unsigned int k) const
+    {
+      return (k > 0 && slave_nodes()[k - 1] == slave_nodes()[k]) ||
+             (k + 1 < slave_nodes().size() && slave_nodes()[k + 1] == slave_nodes()[k]);
+    }
     /// Stiffness that each owned multiplier sees, |B_i|^2 / (B diag(K)^-1 B^T)_ii (eq. M2); 0 for those uncoupled.
     const std::vector<double> &stiffness() const
     {

@@ -80,7 +80,7 @@ namespace
         p.bodies.erase(p.bodies.begin());
         p.boundary_conditions.erase(p.boundary_conditions.begin());
         for (auto &condition : p.boundary_conditions)
-          condition.region.body = 1;
+          condition.region.bodies = {1};
         p.contact_pairs[0].slave                = region(1, {z_minus});
         p.contact_pairs[0].master               = RegionParameters();
         p.contact_pairs[0].master_surface.shape = MasterSurfaceParameters::Shape::plane;

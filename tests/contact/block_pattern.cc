@@ -60,7 +60,7 @@ int main(int argc, char **argv)
   }
   for (unsigned int k = 0; k < 3; ++k)
     for (const auto &node : surfaces.nodes())
-      if (surfaces.slave_number(&node - surfaces.nodes().data()) == dealii::numbers::invalid_unsigned_int &&
+      if (surfaces.slave_number(0, &node - surfaces.nodes().data()) == dealii::numbers::invalid_unsigned_int &&
           node.X.distance(surfaces.nodes()[surfaces.slave_nodes()[k].node].X) < 1e-12)
         unknowns.emplace_back(node.dofs.begin(), node.dofs.end());
   for (unsigned int k = 0; k < 3; ++k)

@@ -39,7 +39,7 @@ namespace
     p.bodies                                = {box("cube", "2,2,2", {0, 0, 0}, {1, 1, 1}, 1000, nu), tool()};
     p.contact_pairs                         = {ContactPairParameters()};
     p.contact_pairs[0].slave                = region(1, {z_plus});
-    p.contact_pairs[0].master.body          = 2;
+    p.contact_pairs[0].master.bodies        = {2};
     p.contact_pairs[0].master_surface.shape = Shape::plane;
     p.contact_pairs[0].master_surface.point = Point(0.3, -0.2, 1.);
     p.contact_pairs[0].master_surface.axis  = Vector3({0., 0., -1.});
@@ -183,7 +183,7 @@ namespace
     p.contact_pairs       = {ContactPairParameters()};
     auto &pair            = p.contact_pairs[0];
     pair.slave            = region(1, {z_plus});
-    pair.master.body      = 2;
+    pair.master.bodies    = {2};
     pair.master_surface   = {shape, {}, {}, 2., false, {}};
     // deep enough for the integration points to touch it at first
     pair.master_surface.point = Point(0, 0, (shape == Shape::paraboloid || shape == Shape::plane ? 0 : 2) - 0.01);
@@ -239,7 +239,7 @@ namespace
                                           hold("y", region(1, {y_minus, y_plus}), {1})};
     p.contact_pairs                    = {ContactPairParameters()};
     p.contact_pairs[0].slave           = region(1, {z_plus});
-    p.contact_pairs[0].master.body     = 2;
+    p.contact_pairs[0].master.bodies   = {2};
     p.contact_pairs[0].master_surface  = {Shape::cylinder, Point(0., 0.2, 1.), Vector3({0., 1., 0.}), 1., false, {}};
     p.contact_pairs[0].friction_coefficient = 0.5;
     p.load_stepping                         = {{1., 2.}, {2, 8}};

@@ -116,7 +116,7 @@ namespace
       p.bodies[1].motion.translation     = {"0.03*max(0,t-1)", "0", "0"};
       p.bodies[1].rigid_free             = rolls ? std::vector<unsigned int>{2, 4} : std::vector<unsigned int>{2};
       p.bodies[1].rigid_force            = {"0", "0", "-5*min(t,1)"};
-      p.contact_pairs[0].master.body     = 2;
+      p.contact_pairs[0].master.bodies   = {2};
       p.contact_pairs[0].start.status    = ContactPairParameters::InitialStatus::closed;
       p.contact_pairs[0].master_surface.point[2] = radius - 1e-4;
       p.contact_pairs[0].master_surface.motion   = {};

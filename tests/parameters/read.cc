@@ -38,7 +38,7 @@ namespace
 
   void print(const std::string &name, const RegionParameters &region)
   {
-    print(name + " body", region.body);
+    print(name + " body", region.first_body());
     print(name + " boundary ids", region.boundary_ids);
     print(name + " where", region.where);
   }

@@ -216,7 +216,7 @@ namespace
     const double          angle = p.bodies[0].rotation_angle * dealii::numbers::PI / 180., radius = 2.;
     const Point           top(10. * std::cos(angle) - 0.5 * std::sin(angle), 1.2 + 0.5 * std::cos(angle), 0.5);
     ContactPairParameters contact = pair(region(1, {y_plus}), RegionParameters(), 0.3);
-    contact.master.body           = 2;
+    contact.master.bodies         = {2};
     contact.scheme                = ContactPairParameters::Scheme::averaged;
     contact.master_surface.shape  = MasterSurfaceParameters::Shape::cylinder;
     contact.master_surface.radius = radius;

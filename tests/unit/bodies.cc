@@ -157,7 +157,8 @@ namespace
     const auto make = [&](const unsigned int body, const std::vector<unsigned int> &ids, const std::string &where)
     {
       RegionParameters parameters;
-      parameters.body = body;
+      if (body > 0)
+        parameters.bodies = {body};
       parameters.boundary_ids.assign(ids.begin(), ids.end());
       parameters.where = where;
       return Region(parameters, bodies, "Contact pair 1, slave");

@@ -65,7 +65,7 @@ namespace
       if (face.owner == rank)
         for (const unsigned int n : face.nodes)
           missing += f.pairs[0].scheme == ContactPairParameters::Scheme::nodal &&
-                     f.jump.begin(surfaces.slave_number(n)) == f.jump.end(surfaces.slave_number(n));
+                     f.jump.begin(surfaces.slave_number(0, n)) == f.jump.end(surfaces.slave_number(0, n));
     check("  nodes of own faces have their jumps", sum(missing, communicator) == 0);
     double area = 0.;
     for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)

@@ -111,7 +111,7 @@ namespace
   void compare(const std::string &title, const std::vector<BodyParameters> &parameters, const unsigned int weighty)
   {
     std::vector<RegionParameters> slaves(1);
-    slaves[0].body         = 1;
+    slaves[0].bodies       = {1};
     slaves[0].boundary_ids = {weighty};
     Bodies whole(parameters, world()), shares(parameters, world(), false, slaves);
     check(title + ": p4est refines the one, not the other", whole.refinable() && !shares.refinable());

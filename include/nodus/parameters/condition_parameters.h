@@ -13,25 +13,35 @@
 
 namespace Nodus
 {
-  /// A part of the boundary: faces of one body (or of all) with the given boundary ids.
+  /// A part of the boundary: faces of some bodies (or of all) with the given boundary ids.
   struct RegionParameters
   {
-    unsigned int                            body = 0; ///< number of the body, 0 = every body
-    std::vector<dealii::types::boundary_id> boundary_ids;
-    std::string                             where; ///< muParser predicate of x, y, z; empty = everywhere
-    /// Names of physical surfaces, which Parameters::read() replaces by their ids, unless every body is meant ...
+    std::vector<unsigned int>               bodies;          ///< by number; empty = every body
+    std::vector<dealii::types::boundary_id> boundary_ids;    ///< of all these bodies
+    std::string                             where;           ///< muParser predicate of x, y, z; empty = everywhere
+    std::vector<std::string>                body_names = {}; ///< which Parameters::read() replaces by numbers
+    /// Names of physical surfaces, which Parameters::read() replaces by their ids, unless several bodies are meant ...
     std::vector<std::string> boundary_names = {};
-    /// ... of which each, by its number, may have other ids for the same names.
+    /// ... of which each, by its number, may have other ids for the same names, or has ids of its own ("2:5").
     std::map<unsigned int, std::vector<dealii::types::boundary_id>> ids_of_body = {};
 
+    /// Whether the body of this number belongs to it.
+    bool has_body(unsigned int number) const;
+    /// The number of the only body or the first one; 0: every body.
+    unsigned int first_body() const
+    {
+      return bodies.empty() ? 0 : bodies.front();
+    }
     /// Whether faces of a body (by number) with the boundary id @p id belong to it, but for where.
     bool takes(unsigned int of_body, dealii::types::boundary_id id) const;
     /// Whether ids or names are given at all.
     bool has_ids() const
     {
-      return !boundary_ids.empty() || !boundary_names.empty();
+      return !boundary_ids.empty() || !boundary_names.empty() || !ids_of_body.empty();
     }
-    /// "1, 5", with the names of a region of every body behind the ids.
+    /// "2, 3" or "every body", for messages.
+    std::string bodies_text() const;
+    /// "1, 5", with the names of a region of several bodies behind the ids, then what single bodies have.
     std::string ids_text() const;
   };
 

@@ -249,7 +249,7 @@ namespace Nodus
     /// One in closed form that moves with a rigid body of the model.
     bool has_carried_master() const
     {
-      return has_rigid_master() && master.body > 0;
+      return has_rigid_master() && !master.bodies.empty();
     }
     bool has_rigid_master() const
     {

@@ -35,15 +35,32 @@ namespace Nodus
                     "\nend\n");
       }
 
+      /// "2, 3" as the keys of bodies have it.
+      std::string numbers(const RegionParameters &side)
+      {
+        std::string list;
+        for (const unsigned int body : side.bodies)
+          list += (list.empty() ? "" : ", ") + std::to_string(body);
+        return list;
+      }
+
       /// Whether a condition may hold nodes of a contact surface: it has a boundary id of its faces, or @p around, of
-      /// any faces of its body, whose edges they may share.
+      /// any faces of its bodies, whose edges they may share.
       bool may_hold(const BoundaryConditionParameters &condition, const RegionParameters &side, const bool around)
       {
-        const auto &ids = side.boundary_ids;
-        return condition.holds() && (condition.region.body == 0 || condition.region.body == side.body) &&
-               (around || !condition.region.has_ids() ||
-                std::any_of(
-                    ids.begin(), ids.end(), [&](const auto id) { return condition.region.takes(side.body, id); }));
+        if (!condition.holds())
+          return false;
+        for (const unsigned int body : side.bodies)
+        {
+          const auto takes = [&](const auto id) { return condition.region.takes(body, id); };
+          const auto own   = side.ids_of_body.find(body);
+          if (condition.region.has_body(body) &&
+              (around || !condition.region.has_ids() ||
+               std::any_of(side.boundary_ids.begin(), side.boundary_ids.end(), takes) ||
+               (own != side.ids_of_body.end() && std::any_of(own->second.begin(), own->second.end(), takes))))
+            return true;
+        }
+        return false;
       }
     } // namespace
 
@@ -207,8 +224,9 @@ namespace Nodus
                                  (held.empty() ? "none" : held));
         const auto &pair = parameters.contact_pairs[constraint.pair];
         for (unsigned int q = 0; q < parameters.contact_pairs.size(); ++q)
-          if (const auto &other = parameters.contact_pairs[q];
-              q != constraint.pair && other.slave.body == pair.master.body && other.master.body == pair.slave.body)
+          if (const auto &other = parameters.contact_pairs[q]; q != constraint.pair &&
+                                                               other.slave.bodies == pair.master.bodies &&
+                                                               other.master.bodies == pair.slave.bodies)
           {
             cause.evidence.push_back(pair_name(parameters, q) + " has the same bodies with slave and master exchanged");
             cause.changes.push_back({text("Contact pair ", q + 1), "exists", "nothing", "leave this pair out"});
@@ -227,12 +245,12 @@ namespace Nodus
                                  "leaves the faces around this node out"});
         if (!pair.has_rigid_master())
           cause.changes.push_back({in_pair(constraint.pair, "Slave body"),
-                                   text(pair.slave.body),
-                                   text(pair.master.body),
+                                   numbers(pair.slave),
+                                   numbers(pair.master),
                                    "slave and master change places, with their boundary ids",
                                    {{"Slave boundary ids", pair.master.ids_text()},
                                     {"Slave where", pair.master.where},
-                                    {"Master body", text(pair.slave.body)},
+                                    {"Master body", numbers(pair.slave)},
                                     {"Master boundary ids", pair.slave.ids_text()},
                                     {"Master where", pair.slave.where}}});
       }
