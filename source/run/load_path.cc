@@ -100,7 +100,7 @@ namespace Nodus
     try
     {
       if (relaxing_)
-        parts_.strategy.relax_increment();
+        parts_.strategy.relax_increment(unstable_);
       else
         parts_.strategy.solve_increment();
       relaxing_ = relaxed_ = false;
@@ -111,18 +111,17 @@ namespace Nodus
     }
     catch (const SolverFailure &failure)
     {
-      const IterationCounts &pass = journal.pass;
-      std::ostringstream     reason;
-      reason << "geometry pass " << pass.geometry << ", threshold pass " << pass.threshold << ", status pass "
-             << pass.status << ": " << failure.what();
+      std::ostringstream reason;
+      reason << "geometry pass " << journal.pass.geometry << ", threshold pass " << journal.pass.threshold
+             << ", status pass " << journal.pass.status << ": " << failure.what();
       journal.diagnosis.end_attempt(failure.what());
+      unstable_ = parts_.equilibrium.unstable();
       const bool may_shrink =
           !parts_.strategy.begins_singular() && failure.kind() != SolverFailure::Kind::prescribed_contact;
       const bool  relax  = may_shrink && may_relax(failure.kind());
       const bool  halved = may_shrink && !relax && try_smaller(failure.kind());
-      const bool  again  = halved || relax;
       std::string hint;
-      if (!again)
+      if (!halved && !relax)
         hint = report_failure({parts_.model,
                                parts_.journal,
                                parts_.states,
@@ -132,7 +131,7 @@ namespace Nodus
                               failure,
                               may_shrink);
       parts_.model.roll_back(parts_.states);
-      if (!again)
+      if (!halved && !relax)
         give_up(reason.str(), hint, may_shrink);
       journal.console.remark(reason.str() + (relax                  ? "; the bodies are relaxed"
                                              : path.ends_interval() ? "; it is tried to end there"
@@ -170,15 +169,16 @@ namespace Nodus
                           SolverFailure::Kind::judged);
   }
 
-  /// Where iterates are not stable: once after a few halvings, and again when no smaller increment is left.
+  /// Where iterates are not stable: once after a few halvings, and again when no smaller increment is left. Where
+  /// Newton's method finds nothing then, for there may be no equilibrium nearby: friction lets go.
   bool LoadPath::may_relax(const SolverFailure::Kind failure) const
   {
-    using Kind         = SolverFailure::Kind;
-    const bool answers = failure == Kind::newton_stalled || failure == Kind::newton_limit ||
-                         failure == Kind::status_cycle || failure == Kind::geometry_cycle ||
-                         failure == Kind::loop_limit;
-    return answers && !relaxing_ && parts_.strategy.may_relax() && parts_.equilibrium.unstable() &&
-           (!parts_.path.may_cut_back() || (!relaxed_ && cut_backs_ >= patient_halvings));
+    using Kind        = SolverFailure::Kind;
+    const bool newton = failure == Kind::newton_stalled || failure == Kind::newton_limit;
+    const bool loop   = failure == Kind::status_cycle || failure == Kind::geometry_cycle || failure == Kind::loop_limit;
+    const bool last = !parts_.path.may_cut_back(), early = !relaxed_ && cut_backs_ >= patient_halvings;
+    return !relaxing_ && parts_.strategy.may_relax() &&
+           (unstable_ ? (newton || loop) && (last || early) : newton && last);
   }
 
   /// Nothing is committed that does not hold where it is measured anew. @throws SolverFailure

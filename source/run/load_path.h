@@ -61,7 +61,8 @@ namespace Nodus
     unsigned int      first_;                    ///< increment of this run
     std::vector<bool> never_closed_;             ///< by pair
     unsigned int      cut_backs_        = 0;     ///< since the last increment that converged
-    bool              relaxing_         = false; ///< the increment at hand
+    bool              relaxing_         = false; ///< the increment at hand ...
+    bool              unstable_         = false; ///< ... for iterates of the last attempt at it were not stable
     bool              relaxed_          = false; ///< since the last increment that converged
     unsigned int      mesh_repetitions_ = 0;     ///< of the increment at hand on a finer mesh
   };

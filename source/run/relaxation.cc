@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace Nodus
@@ -13,6 +14,8 @@ namespace Nodus
     constexpr unsigned int max_steps = 200;
     /// Rates of the dashpots: of the first step from where nothing is known, and where it is given up.
     constexpr double first_rate = 1e-2, largest_rate = 1e8, smallest_rate = 1e-8;
+    /// Steps that may fail where nothing but that no equilibrium was found speaks for a way out.
+    constexpr unsigned int max_failures = 8;
     /// Factors on the rate after a step that failed, and that led to a state which is stable without dashpots.
     constexpr double harder = 4., softest = 0.1, gentle = 0.8;
     /// Between two rates that are tried where the stiffness is negative.
@@ -38,13 +41,15 @@ namespace Nodus
   {
   }
 
-  void Relaxation::solve(const MergedLoops &merged, const bool from_equilibrium)
+  void Relaxation::solve(const MergedLoops &merged, const Reason reason)
   {
-    State  reached = states_.now;
-    Vector anchor(reached.unknowns.block(0)), pull(anchor);
-    pull              = 0.; // what is out of balance without dashpots
-    bool   pull_known = from_equilibrium;
-    double rate = first_rate, largest_part = settled, softer = softest;
+    const bool from_equilibrium = reason == Reason::unstable_equilibrium;
+    State      reached          = states_.now;
+    Vector     anchor(reached.unknowns.block(0)), pull(anchor);
+    pull                    = 0.; // what is out of balance without dashpots
+    bool         pull_known = from_equilibrium;
+    double       rate = first_rate, largest_part = settled, softer = softest;
+    unsigned int failures = 0;
     equilibrium_.hold(0., anchor);
     if (from_equilibrium)
     {
@@ -60,7 +65,7 @@ namespace Nodus
         go_back_to(reached);
         softer = gentle;
         rate *= harder;
-        if (rate > largest_rate)
+        if (rate > largest_rate || (++failures > max_failures && reason == Reason::no_equilibrium))
           break;
         continue;
       }
@@ -98,7 +103,8 @@ namespace Nodus
       rate   = stable ? softer * rate : smallest_stable(rate);
       softer = std::max(softest, softer * std::sqrt(softer));
     }
-    throw SolverFailure("iterates are not stable, and relaxation found no stable equilibrium",
+    throw SolverFailure(std::string(reason == Reason::no_equilibrium ? "" : "iterates are not stable, and ") +
+                            "relaxation found no stable equilibrium",
                         SolverFailure::Kind::newton_stalled);
   }
 

@@ -21,9 +21,16 @@ namespace Nodus
                IncrementLoops &loops,
                Stability      &stability);
 
-    /// From the state at hand: an equilibrium that is not stable, which is left along Stability::mode(), or where the
-    /// increment began. @param merged into Newton's iteration. @throws SolverFailure
-    void solve(const MergedLoops &merged, bool from_equilibrium);
+    /// Why the bodies are let go: from the state at hand, which is not stable, along Stability::mode(), or from where
+    /// the increment began, after iterates that were not stable, or that led nowhere.
+    enum class Reason
+    {
+      unstable_equilibrium,
+      unstable_iterates,
+      no_equilibrium
+    };
+    /// @param merged into Newton's iteration. @throws SolverFailure
+    void solve(const MergedLoops &merged, Reason reason);
 
   private:
     bool   step(const MergedLoops &merged, double rate, const Vector &anchor);

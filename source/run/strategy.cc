@@ -111,19 +111,31 @@ namespace Nodus
     loops_.solve();
   }
 
-  void Strategy::relax_increment()
+  void Strategy::relax_increment(const bool unstable)
   {
     journal_.counts = IterationCounts();
-    relax(false);
+    try
+    {
+      relax(unstable ? Relaxation::Reason::unstable_iterates : Relaxation::Reason::no_equilibrium);
+    }
+    catch (const SolverFailure &failure)
+    {
+      if (unstable)
+        throw;
+      journal_.console.remark(std::string(failure.what()) + "; once more without, for the diagnosis");
+      journal_.diagnosis.end_attempt(failure.what());
+      model_.roll_back(states_);
+      solve_increment();
+    }
   }
 
-  void Strategy::relax(const bool from_equilibrium)
+  void Strategy::relax(const Relaxation::Reason reason)
   {
     ++journal_.counts.fallbacks;
     journal_.count(Remedy::relaxation);
     try
     {
-      relaxation_.solve(ladder().front().merged, from_equilibrium);
+      relaxation_.solve(ladder().front().merged, reason);
       stability_.release();
     }
     catch (const SolverFailure &)
@@ -150,7 +162,7 @@ namespace Nodus
     journal_.console.remark(what + ": the bodies are let go from it");
     try
     {
-      relax(true);
+      relax(Relaxation::Reason::unstable_equilibrium);
     }
     catch (const SolverFailure &failure)
     {

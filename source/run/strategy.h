@@ -37,8 +37,9 @@ namespace Nodus
     /// Solves the increment that Equilibrium::begin_increment() was given. @throws SolverFailure of the last attempt,
     /// whose state is still at hand.
     void solve_increment();
-    /// The same by relaxation alone, where smaller increments do not help.
-    void relax_increment();
+    /// The same by relaxation, where smaller increments do not help. @param unstable: iterates have not been stable.
+    /// Otherwise it is the last resort, and the failure that it did not cure is thrown again.
+    void relax_increment(bool unstable);
     /// The motion that was resisted least in the last states, empty where none has been followed (Stability).
     const Vector &softest_motion() const
     {
@@ -62,7 +63,7 @@ namespace Nodus
 
   private:
     void run(const Attempt &attempt);
-    void relax(bool from_equilibrium);
+    void relax(Relaxation::Reason reason);
     void leave_if_unstable(const Attempt &attempt);
 
     Model          &model_;
