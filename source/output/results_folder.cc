@@ -18,7 +18,7 @@ namespace Nodus
   {
     /// Fields, tables and profile as their writers name them; Diagnosis removes its own files.
     const std::regex results("(bodies|contact)(_[0-9]+([.][0-9]+)?[.]p?vtu|[.]pvd)|"
-                             "(contact|reactions|rigid_bodies|points|lines|energy|convergence)[.]csv|profile[.]json");
+                             "(contact|reactions|rigid_bodies|points|lines|energy|convergence)[.]csv|(profile|status)[.]json");
   } // namespace
 
   ResultsFolder::ResultsFolder(const std::string &path, const MPI_Comm communicator)

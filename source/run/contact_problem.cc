@@ -102,16 +102,28 @@ namespace Nodus
       journal.diagnosis.begin_run();
     }
     if (restart)
-      return checkpointing.read(path);
-    results.write_initial_state();
+      checkpointing.read(path);
+    else
+      results.write_initial_state();
+    if (dealii::Utilities::MPI::this_mpi_process(model.communicator) == 0)
+      journal.status = std::make_unique<StatusFile>(parameters.output.results_folder,
+                                                    parameters.load_stepping.interval_ends.back(),
+                                                    path.progress(),
+                                                    dealii::Utilities::MPI::n_mpi_processes(model.communicator));
   }
 
   void ContactProblem::Implementation::run()
   {
     std::optional<ResultsFolder> folder;
     begin(folder);
-    const auto report_anyway = [&]
+    const auto end_with = [&](const std::string &state, const std::string &message)
     {
+      if (journal.status)
+        journal.status->end(state, message);
+    };
+    const auto report_anyway = [&](const std::string &state, const std::string &message)
+    {
+      end_with(state, message);
       report_remedies();
       if (const std::string problem = report_profile(false); !problem.empty())
         journal.console.line(problem); // why the run ends is what the caller must hear of
@@ -119,18 +131,31 @@ namespace Nodus
     try
     {
       LoadPath({model, journal, states, equilibrium, strategy, results, adaptation, checkpointing, path})
-          .follow(callback);
+          .follow(
+              [&](const unsigned int increment, const double t)
+              {
+                if (journal.status)
+                  journal.status->add(increment, t, path.progress(), journal.counts);
+                if (callback)
+                  callback(increment, t);
+              });
     }
-    catch (const SolverFailure &)
+    catch (const SolverFailure &failure)
     {
-      report_anyway();
+      report_anyway("stopped", failure.what());
       throw;
     }
-    catch (const Interrupted &)
+    catch (const Interrupted &interruption)
     {
-      report_anyway();
+      report_anyway("interrupted", interruption.what());
       throw;
     }
+    catch (const std::exception &error)
+    {
+      end_with("stopped", error.what());
+      throw;
+    }
+    end_with("finished", "");
     report_remedies();
     report_verdicts();
     report_energies();

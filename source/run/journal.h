@@ -4,6 +4,7 @@
 #include "base/profile.h"
 #include "output/console.h"
 #include "output/diagnosis/diagnosis.h"
+#include "output/status_file.h"
 #include "output/tables.h"
 #include "output/verdict.h"
 #include <nodus/parameters/parameters.h>
@@ -31,16 +32,17 @@ namespace Nodus
       ++used[remedy];
     }
 
-    Console                 console;
-    Profile                 profile;
-    Diagnosis               diagnosis;
-    std::unique_ptr<Tables> tables;     ///< once the run has begun
-    IterationCounts         pass;       ///< numbers of the geometry, threshold and status pass at hand
-    IterationCounts         counts;     ///< totals of the increment at hand
-    Verdict                 verdict;    ///< on the state at hand
-    Verdict                 verdicts;   ///< what came closest to its tolerance in the states of the run that hold
-    unsigned int            judged = 0; ///< these
-    PerRemedy<unsigned int> used;       ///< in the whole run, in increments that failed, too
+    Console                     console;
+    Profile                     profile;
+    Diagnosis                   diagnosis;
+    std::unique_ptr<Tables>     tables;     ///< once the run has begun
+    std::unique_ptr<StatusFile> status;     ///< the same, on the first rank
+    IterationCounts             pass;       ///< numbers of the geometry, threshold and status pass at hand
+    IterationCounts             counts;     ///< totals of the increment at hand
+    Verdict                     verdict;    ///< on the state at hand
+    Verdict                     verdicts;   ///< what came closest to its tolerance in the states of the run that hold
+    unsigned int                judged = 0; ///< these
+    PerRemedy<unsigned int>     used;       ///< in the whole run, in increments that failed, too
   };
 } // namespace Nodus
 

@@ -218,8 +218,8 @@ def test_folder_again():
     done = short.run("results/again")
     check("files", sorted(os.listdir("results/again")),
           ["bodies.pvd", "bodies_0000.vtu", "bodies_0001.vtu", "bodies_notes.vtu", "checkpoints", "checkpoints.before", "contact.csv",
-           "convergence.csv", "energy.csv", "log", "reactions.csv"])  # fmt: skip
-    check("told", "Files of an earlier run are removed: 18" in done.log, True)
+           "convergence.csv", "energy.csv", "log", "reactions.csv", "status.json"])  # fmt: skip
+    check("told", "Files of an earlier run are removed: 19" in done.log, True)
     os.rename("results/again/checkpoints", "results/again/other")
     os.rename("results/again/checkpoints.before", "results/again/checkpoints")
     after = case.run("results/again", restart=True)

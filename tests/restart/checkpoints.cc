@@ -150,7 +150,8 @@ int main(int argc, char **argv)
                                               "contact_0000.vtu",
                                               "convergence.csv",
                                               "energy.csv",
-                                              "reactions.csv"}));
+                                              "reactions.csv",
+                                              "status.json"}));
   }
 
   put(kept, checkpoints);
