@@ -31,8 +31,7 @@ namespace Nodus
 
     std::string describe(const RegionParameters &region)
     {
-      return (region.bodies.empty() ? "any body" : region.bodies_text()) +
-             (region.has_ids() ? ", boundary ids " + region.ids_text() : "");
+      return region.bodies_text() + (region.has_ids() ? ", boundary ids " + region.ids_text() : "");
     }
 
     /// Throws, everywhere, for the first condition of which no rank found a @p what.

@@ -1,6 +1,7 @@
 #include "contact/face_rule.h"
 #include "contact/friction_limit.h"
 #include "contact/surface.h"
+#include "mesh/sides.h"
 #include "parallel/all_gather.h"
 
 #include <deal.II/base/mpi.h>
@@ -21,11 +22,6 @@ namespace Nodus
     constexpr DoFIndex places_on_face = 1024;
     /// Slave surfaces of two pairs may meet at an edge whose sides are turned by 30 degrees or more.
     constexpr double smooth_seam_cosine = 0.866;
-
-    std::string coordinates(const double *const X)
-    {
-      return std::to_string(X[0]) + ", " + std::to_string(X[1]) + ", " + std::to_string(X[2]);
-    }
   } // namespace
 
   void ContactSurfaces::take_slave_faces()
@@ -215,9 +211,9 @@ namespace Nodus
         if (const unsigned int other =
                 pair_of_face.emplace(Ends(face.dofs[0][0], face.dofs[n_face_nodes - 1][0]), p).first->second;
             other != p)
-          return pair_label(pairs_, other) + " and " + pair_label(pairs_, p) + " overlap: the face at node (" +
-                 coordinates(face.X[0]) +
-                 ") is slave in both; make the slave regions disjoint with 'Slave where', join the pairs, or give one "
+          return pair_label(pairs_, other) + " and " + pair_label(pairs_, p) + " overlap: the face at node " +
+                 coordinates(Point(face.X[0][0], face.X[0][1], face.X[0][2])) +
+                 " is slave in both; make the slave regions disjoint with 'Slave where', join the pairs, or give one "
                  "pair both masters, as in 'Master body = 2, 3'";
     return "";
   }
@@ -248,7 +244,7 @@ namespace Nodus
         if (!smooth && !rubs_in_points(k) && !rubs_in_points(l))
           continue;
         return pair_label(pairs_, sites_.nodes[l].pair) + " and " + pair_label(pairs_, sites_.nodes[k].pair) +
-               " meet at node (" + coordinates(&nodes_[sites_.nodes[k].node].X[0]) + "), which is slave in both, " +
+               " meet at node " + coordinates(nodes_[sites_.nodes[k].node].X) + ", which is slave in both, " +
                (smooth ? "without an edge there; join the pairs, give one pair both masters, as in 'Master body = 2, "
                          "3', or leave faces between them out with 'Slave where'"
                        : "where friction with 'Scheme = integration point' or 'Weights = consistent' cannot be told "

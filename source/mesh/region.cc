@@ -60,7 +60,7 @@ namespace Nodus
       for (const auto &[id, text] : present)
         list += (list.empty() ? "" : ", ") + text;
       throw InputError(
-          context + ": no face of " + (parameters_.bodies.empty() ? "any body" : parameters_.bodies_text()) +
+          context + ": no face of " + parameters_.bodies_text() +
           (single ? " (" + bodies.name(parameters_.first_body() - 1) + ")" : "") + " has the " + what +
           "; ids present: " + list +
           (present.size() == 1 ? " (a generator numbers the sides when its last argument, colorize, is true)" : ""));

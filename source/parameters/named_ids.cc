@@ -321,9 +321,14 @@ namespace Nodus
     return text;
   }
 
+  std::string RegionParameters::body_numbers() const
+  {
+    return bodies.empty() ? "0" : joined(bodies, {});
+  }
+
   std::string RegionParameters::bodies_text() const
   {
-    return bodies.empty() ? "every body" : (bodies.size() == 1 ? "body " : "bodies ") + joined(bodies, {});
+    return bodies.empty() ? "any body" : (bodies.size() == 1 ? "body " : "bodies ") + body_numbers();
   }
 
   void resolve_names(Parameters &parameters, const ParameterFile &file)

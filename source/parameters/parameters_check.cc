@@ -282,12 +282,10 @@ namespace Nodus
       section.require(!pair.has_carried_master() || some(pair.master, rigid),
                       "Master body",
                       "is not rigid and cannot carry a rigid surface; remove it, or set 'Rigid = true' there");
-      section.require(pair.has_rigid_master() || driven(pair.slave) <= 1,
-                      "Slave body",
-                      "has several rigid bodies that forces drive; give each of them a contact pair of its own");
-      section.require(pair.has_rigid_master() || driven(pair.master) <= 1,
-                      "Master body",
-                      "has several rigid bodies that forces drive; give each of them a contact pair of its own");
+      for (const auto &[key, side] : {std::make_pair("Slave body", &pair.slave), {"Master body", &pair.master}})
+        section.require(driven(*side) <= 1,
+                        key,
+                        "has several rigid bodies that forces drive; give each of them a contact pair of its own");
       section.require(!some(pair.slave, rigid) || !(pair.has_rigid_master() || some(pair.master, rigid)),
                       "Slave body",
                       "is rigid, as is the master: neither can give way; remove the pair");

@@ -272,9 +272,8 @@ namespace Nodus
       check_shape(section, surface, shape);
       section.require(pair.master.bodies.size() <= 1 && pair.master.first_body() <= n_bodies,
                       "Master body",
-                      "is " + pair.master.bodies_text().substr(pair.master.bodies_text().find(' ') + 1) +
-                          "; give the number of the rigid body that carries the " + shape + ", 1 to " +
-                          std::to_string(n_bodies) + ", or 0 for none");
+                      "is " + pair.master.body_numbers() + "; give the number of the rigid body that carries the " +
+                          shape + ", 1 to " + std::to_string(n_bodies) + ", or 0 for none");
       section.require(!pair.has_carried_master() || !is_given(surface.motion),
                       "Master translation",
                       "and the like have no effect on a surface that moves with its Master body; remove them, or say "

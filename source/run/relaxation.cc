@@ -103,6 +103,7 @@ namespace Nodus
       rate   = stable ? softer * rate : smallest_stable(rate);
       softer = std::max(softest, softer * std::sqrt(softer));
     }
+    equilibrium_.add_relaxed_work(-equilibrium_.relaxed_work()); // the bodies go back to where they were
     throw SolverFailure(std::string(reason == Reason::no_equilibrium ? "" : "iterates are not stable, and ") +
                             "relaxation found no stable equilibrium",
                         SolverFailure::Kind::newton_stalled);

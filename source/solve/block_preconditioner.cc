@@ -74,7 +74,7 @@ namespace Nodus
                   });
       if (blocks.empty())
         continue;
-      // friction couples displacements along the rows of B
+      // friction couples displacements along the rows of B, at nodes of several sites along unknown ones
       Block          D        = Eigen::Map<const Block>(D_inverse_[k].data());
       const DoFIndex node     = system_.slave_nodes()[k];
       const Block    friction = system_.own_coupling(node);

@@ -290,6 +290,7 @@ namespace Nodus
   {
     const Matrix3 D        = site.flexibility_inverse.asDiagonal();
     const Matrix3 friction = system_.own_coupling(nodes_.global(site.node));
+    // of a node of several sites it is not known which part belongs to whose rows
     if (friction.isZero(0.) || system_.shares_node(&site - sites_.data()))
       return D;
     // the rows of friction span the plane in which C_uu acts

@@ -39,7 +39,9 @@ namespace Nodus
     {
       return !boundary_ids.empty() || !boundary_names.empty() || !ids_of_body.empty();
     }
-    /// "2, 3" or "every body", for messages.
+    /// "2, 3", or "0" for every body, as the keys have it.
+    std::string body_numbers() const;
+    /// "body 2", "bodies 2, 3" or "any body", for messages.
     std::string bodies_text() const;
     /// "1, 5", with the names of a region of several bodies behind the ids, then what single bodies have.
     std::string ids_text() const;

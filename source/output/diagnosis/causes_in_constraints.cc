@@ -35,15 +35,6 @@ namespace Nodus
                     "\nend\n");
       }
 
-      /// "2, 3" as the keys of bodies have it.
-      std::string numbers(const RegionParameters &side)
-      {
-        std::string list;
-        for (const unsigned int body : side.bodies)
-          list += (list.empty() ? "" : ", ") + std::to_string(body);
-        return list;
-      }
-
       /// Whether a condition may hold nodes of a contact surface: it has a boundary id of its faces, or @p around, of
       /// any faces of its bodies, whose edges they may share.
       bool may_hold(const BoundaryConditionParameters &condition, const RegionParameters &side, const bool around)
@@ -245,12 +236,12 @@ namespace Nodus
                                  "leaves the faces around this node out"});
         if (!pair.has_rigid_master())
           cause.changes.push_back({in_pair(constraint.pair, "Slave body"),
-                                   numbers(pair.slave),
-                                   numbers(pair.master),
+                                   pair.slave.body_numbers(),
+                                   pair.master.body_numbers(),
                                    "slave and master change places, with their boundary ids",
                                    {{"Slave boundary ids", pair.master.ids_text()},
                                     {"Slave where", pair.master.where},
-                                    {"Master body", numbers(pair.slave)},
+                                    {"Master body", pair.slave.body_numbers()},
                                     {"Master boundary ids", pair.slave.ids_text()},
                                     {"Master where", pair.slave.where}}});
       }
