@@ -16,7 +16,7 @@ BLOCKS = ("two_blocks.prm", "--set", "Load stepping/Increments=400, 600", "--set
 def watch(folder, *options):
     """Exit code and text."""
     done = subprocess.run([sys.executable, os.path.join(SOURCE, "contrib", "plot", "watch"), folder, *options],
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)  # fmt: skip
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, timeout=300)  # fmt: skip
     print("    " + done.stdout.replace("\n", "\n    ").rstrip())
     return done.returncode, done.stdout
 
