@@ -268,11 +268,31 @@ def with_meshio(raw, surface, F, solid, plane):
     check(f"meshio, surface of {solid}", [block.type for block in meshio.read(surface).cells], [plane])
 
 
+def volume(grid):
+    """Of the cells as VTK maps them from their unit cubes; vtkCellSizeFilter of VTK 9.6 has -0.02 for a unit cube of 27
+    nodes."""
+    from vtkmodules.vtkCommonCore import mutable
+
+    h = 0.5 / np.sqrt(3)
+    total = 0.
+    for c in range(grid.GetNumberOfCells()):
+        cell = grid.GetCell(c)
+
+        def at(p):
+            x = [0.] * 3
+            cell.EvaluateLocation(mutable(0), list(p), x, [0.] * cell.GetNumberOfPoints())
+            return np.array(x)
+
+        for corner in np.ndindex(2, 2, 2):
+            p = 0.5 + h * (2 * np.array(corner) - 1)
+            total += np.linalg.det([(at(p + 0.1 * e) - at(p - 0.1 * e)) / 0.2 for e in np.eye(3)]) / 8
+    return total
+
+
 def with_vtk(raw, F):
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonDataModel import vtkDataObject
     from vtkmodules.vtkFiltersGeneral import vtkWarpVector
-    from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
     points = {}
@@ -285,11 +305,7 @@ def with_vtk(raw, F):
         last = warp if kind == "undeformed" else reader
         last.Update()
         points[kind] = vtk_to_numpy(last.GetOutput().GetPoints().GetData())
-        size = vtkCellSizeFilter()
-        size.SetInputConnection(last.GetOutputPort())
-        size.Update()
-        volume = vtk_to_numpy(size.GetOutput().GetCellData().GetArray("Volume")).sum()
-        check(f"VTK, {kind}, volume", float(volume), float(np.linalg.det(F)), 1e-5)
+        check(f"VTK, {kind}, volume", volume(last.GetOutput()), float(np.linalg.det(F)), 1e-5)
     below("VTK, warped and deformed", np.abs(points["undeformed"] - points["deformed"]).max(), 1e-6)
 
 
