@@ -23,18 +23,25 @@ namespace Nodus
     /// Entries of the slave part below this are round-off of the biorthogonality.
     constexpr double smallest_entry = 1e-13;
 
-    /// The closest master point of @p x, of a rigid master empty: whoever needs it finds it again. @returns the part of
-    /// the slave point that counts: beyond the rim it fades out (eq. J7), and is 0 where there is no partner.
-    double find_partner(
-        const ContactGeometry &geometry, const unsigned int pair, const Point &x, const Vector3 &normal, Projection &at)
+    /// The closest master point of a point of slave face @p f, of a rigid master empty: whoever needs it finds it
+    /// again. @returns the part of the slave point that counts: beyond the rim it fades out (eq. J7), and is 0 where
+    /// there is no partner.
+    double find_partner(const ContactGeometry &geometry,
+                        const unsigned int     pair,
+                        const unsigned int     f,
+                        const double           xi,
+                        const double           eta,
+                        Projection            &at)
     {
+      const Point   x      = geometry.slave[pair].at(f, xi, eta).x;
+      const Vector3 normal = geometry.slave[pair].normal(f, xi, eta);
       if (geometry.rigid[pair] != nullptr)
       {
         const RigidPoint point    = geometry.closest_on_rigid(pair, x, normal);
         const double     overhang = point.overhang > 0. ? point.overhang / geometry.overhang[pair] : 0.;
         return point.found ? ContactGeometry::counted_part(overhang) : 0.;
       }
-      at = geometry.search[pair].closest(x, normal, geometry.reach[pair]);
+      at = geometry.closest_to_face(pair, f, xi, eta, x, normal);
       return at.found() ? ContactGeometry::counted_part(geometry.search[pair].overhang(at, x).norm()) : 0.;
     }
 
@@ -46,14 +53,13 @@ namespace Nodus
                        const dealii::Quadrature<2> &rule,
                        std::vector<MortarPoint>    &points)
     {
-      const SurfaceGeometry &slave   = geometry.slave[pair];
-      double                 covered = 0.;
+      double covered = 0.;
       points.clear();
       for (unsigned int q = 0; q < rule.size(); ++q)
       {
         const double xi = rule.point(q)[0], eta = rule.point(q)[1];
         Projection   master;
-        const double counts = find_partner(geometry, pair, slave.at(f, xi, eta).x, slave.normal(f, xi, eta), master);
+        const double counts = find_partner(geometry, pair, f, xi, eta, master);
         covered += counts * rule.weight(q);
         if (counts > 0.)
           points.push_back({xi, eta, counts * rule.weight(q), master});
@@ -192,8 +198,7 @@ namespace Nodus
   {
     const unsigned int p = face.pair, f = face.face;
     if (geometry.rigid[p] == nullptr && pair.integration == ContactPairParameters::Integration::segment)
-      face.coverage = segment_points(
-          geometry.slave[p], f, geometry.master[p], geometry.search[p], geometry.reach[p], face.points, face.trace);
+      face.coverage = segment_points(geometry, p, f, face.points, face.trace);
     else
       face.coverage = {face_points(geometry, p, f, rule, face.points)};
   }

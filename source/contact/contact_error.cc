@@ -78,7 +78,7 @@ namespace Nodus
         const RigidPoint point = geometry.closest_on_rigid(pair, x, normal);
         return {point.found, Projection(), point.x - x};
       }
-      const Projection master = geometry.search[pair].closest(x, normal, geometry.reach[pair], tolerated_overhang);
+      const Projection master = geometry.closest_to_face(pair, face, xi, eta, x, normal, tolerated_overhang);
       if (!master.found())
         return {false, master, Vector3()};
       return {true, master, geometry.master[pair].at(master.face, master.xi, master.eta).x - x};

@@ -80,34 +80,71 @@ namespace Nodus
   MasterSearch::~MasterSearch()                        = default;
   MasterSearch::MasterSearch(MasterSearch &&) noexcept = default;
 
+  namespace
+  {
+    /// The closest of several faces.
+    struct Closest
+    {
+      Projection at;
+      double     distance; ///< squared
+
+      void take(const Projection &other, const double d2, const double size)
+      {
+        // neighbours share an edge point: the lower face number decides, on every rank alike
+        const double tie = 1e-12 * size * size;
+        if (!(d2 < distance - tie || (d2 < distance + tie && other.face < at.face)))
+          return;
+        distance = std::min(d2, distance);
+        at       = other;
+      }
+    };
+  } // namespace
+
   Projection
   MasterSearch::closest(const Point &p, const Vector3 &slave_normal, const double reach, const double part) const
   {
     namespace bgi = boost::geometry::index;
-    Projection best;
-    double     best_distance = reach * reach;
+    Closest best{{}, reach * reach};
     for (auto leaf = tree_->leaves.qbegin(bgi::nearest(p, master_.n_faces() + 1)); leaf != tree_->leaves.qend(); ++leaf)
     {
-      if (squared_distance(leaf->first, p) > best_distance)
+      if (squared_distance(leaf->first, p) > best.distance)
         break; // boxes come in ascending distance
-      const unsigned int f = leaf->second;
-      if (centre_normal_[f] * slave_normal > far_side_cosine)
+      Projection at{leaf->second};
+      if (centre_normal_[at.face] * slave_normal > far_side_cosine)
         continue;
-      double       xi, eta;
-      const double d2 = closest_point(master_, f, p, xi, eta);
-      // neighbours share an edge point: the lower face number decides, on every rank alike
-      const double tie = 1e-12 * size_[f] * size_[f];
-      if (d2 < best_distance - tie || (d2 < best_distance + tie && f < best.face))
-      {
-        best_distance = std::min(d2, best_distance);
-        best          = {f, xi, eta};
-      }
+      const double d2 = closest_point(master_, at.face, p, at.xi, at.eta);
+      best.take(at, d2, size_[at.face]);
     }
-    if (!best.found())
-      return best;
+    return within_rim(best.at, p, part);
+  }
 
-    // A point beyond the rim of the master surface has no partner, but for a small overhang.
-    return overhang(best, p).norm() <= part ? best : Projection();
+  Projection MasterSearch::closest_of_own(const Point               &p,
+                                          const Vector3             &normal,
+                                          const double               reach,
+                                          const double               part,
+                                          const SelfContact::Seeker &seeker) const
+  {
+    thread_local std::vector<unsigned int> faces;
+    dealii::BoundingBox<dim>               around({p, p});
+    around.extend(reach);
+    candidates(around, faces);
+    Closest best{{}, reach * reach};
+    for (const unsigned int f : faces)
+    {
+      if (centre_normal_[f] * normal > SelfContact::averted_cosine || !seeker.may_meet(f, p, normal))
+        continue;
+      Projection   at{f};
+      const double d2 = closest_point(master_, f, p, at.xi, at.eta);
+      if ((master_.position(f, at.xi, at.eta) - p) * normal >= -seeker.visible(f, at.xi, at.eta))
+        best.take(at, d2, size_[f]);
+    }
+    return best.at.found() && seeker.is_slave(best.at.face) ? within_rim(best.at, p, part) : Projection();
+  }
+
+  /// A point beyond the rim of the master surface has no partner, but for a small overhang.
+  Projection MasterSearch::within_rim(const Projection &closest, const Point &p, const double part) const
+  {
+    return closest.found() && overhang(closest, p).norm() <= part ? closest : Projection();
   }
 
   Vector3 MasterSearch::overhang(const Projection &closest, const Point &p) const
@@ -142,9 +179,34 @@ namespace Nodus
       slave.emplace_back(surfaces.slave_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
       master.emplace_back(surfaces.master_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
       search.emplace_back(master[p], pairs[p].projection_tolerance);
+      self.push_back(pairs[p].self_contact ? std::make_unique<SelfContact>(surfaces, slave[p], master[p], reach[p])
+                                           : nullptr);
       rigid.push_back(surfaces.rigid_master(p));
       overhang.push_back(pairs[p].projection_tolerance * surfaces.face_size(p));
     }
+  }
+
+  Projection ContactGeometry::closest_to_face(const unsigned int pair,
+                                              const unsigned int f,
+                                              const double       xi,
+                                              const double       eta,
+                                              const Point       &p,
+                                              const Vector3     &normal,
+                                              const double       part) const
+  {
+    if (self[pair] == nullptr)
+      return search[pair].closest(p, normal, reach[pair], part);
+    const SelfContact::Seeker seeker(*self[pair], f, xi, eta);
+    return search[pair].closest_of_own(p, normal, reach[pair], part, seeker);
+  }
+
+  Projection ContactGeometry::closest_to_node(
+      const unsigned int pair, const unsigned int node, const Point &p, const Vector3 &normal, const double part) const
+  {
+    if (self[pair] == nullptr)
+      return search[pair].closest(p, normal, reach[pair], part);
+    const SelfContact::Seeker seeker(*self[pair], node);
+    return search[pair].closest_of_own(p, normal, reach[pair], part, seeker);
   }
 
   RigidPoint ContactGeometry::closest_on_rigid(const unsigned int pair,

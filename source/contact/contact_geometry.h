@@ -1,7 +1,7 @@
 #ifndef nodus_contact_contact_geometry_h
 #define nodus_contact_contact_geometry_h
 
-#include "contact/surface_geometry.h"
+#include "contact/self_contact.h"
 
 #include <deal.II/base/bounding_box.h>
 
@@ -34,6 +34,10 @@ namespace Nodus
     /// Closest master point of @p p within @p reach that does not look the way of @p slave_normal (the far side of a
     /// body). A point beyond the rim of the surface by more than @p part of what is tolerated has none.
     Projection closest(const Point &p, const Vector3 &slave_normal, double reach, double part = 1.) const;
+    /// The same where the surface touches itself, for @p seeker, which is at @p p; none where the closest point is its
+    /// slave (theory section 35).
+    Projection closest_of_own(
+        const Point &p, const Vector3 &normal, double reach, double part, const SelfContact::Seeker &seeker) const;
 
     /// How far @p p is beyond the rim of the surface, of which @p closest is the nearest point: along the surface, over
     /// what is tolerated. Zero elsewhere.
@@ -52,6 +56,8 @@ namespace Nodus
     void candidates(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &faces) const;
 
   private:
+    Projection within_rim(const Projection &closest, const Point &p, double part) const;
+
     struct Tree;
     const SurfaceGeometry            &master_;
     const double                      tolerance_; ///< of the overhang [faces]
@@ -75,16 +81,29 @@ namespace Nodus
       return std::max(0., 1. - overhang * fading);
     }
     static constexpr double fading = 2.;
+    /// Partner of the point (xi, eta) of slave face @p f, which is at @p p and looks along @p normal; of a pair with
+    /// master faces.
+    Projection closest_to_face(unsigned int   pair,
+                               unsigned int   f,
+                               double         xi,
+                               double         eta,
+                               const Point   &p,
+                               const Vector3 &normal,
+                               double         part = 1.) const;
+    /// The same of a slave node, given as index into ContactSurfaces::nodes().
+    Projection closest_to_node(
+        unsigned int pair, unsigned int node, const Point &p, const Vector3 &normal, double part = 1.) const;
     /// Point of a rigid master that is a partner of @p p, by the same rules as those of MasterSearch.
     RigidPoint closest_on_rigid(unsigned int pair, const Point &p, const Vector3 &slave_normal, double part = 1.) const;
     /// Position of a site.
     Point position(const ContactSurfaces &surfaces, unsigned int site) const;
 
-    std::vector<SurfaceGeometry>      slave, master;
-    std::vector<MasterSearch>         search;
-    std::vector<const RigidSurface *> rigid;    ///< masters without faces, or nullptr
-    std::vector<double>               reach;    ///< farther master points are no partners [length]
-    std::vector<double>               overhang; ///< of a projection over the rim of a rigid master, at most [length]
+    std::vector<SurfaceGeometry>              slave, master;
+    std::vector<MasterSearch>                 search;
+    std::vector<std::unique_ptr<SelfContact>> self;  ///< of pairs whose surface touches itself, or nullptr
+    std::vector<const RigidSurface *>         rigid; ///< masters without faces, or nullptr
+    std::vector<double>                       reach; ///< farther master points are no partners [length]
+    std::vector<double> overhang; ///< of a projection over the rim of a rigid master, at most [length]
   };
 
   /// Closest point of face @p f to @p p: local coordinates in [0, 1]^2 (clamped at edges and vertices).

@@ -61,10 +61,19 @@ namespace Nodus
             record.cell        = cell->active_cell_index();
             record.body        = cell->material_id() + 1;
             for (unsigned int i = 0; i < base.n_dofs_per_cell(); ++i)
-              if (std::abs(support_points[i][normal] - f % 2) < 1e-12)
+            {
+              const auto position = [&](const unsigned int axis)
+              { return static_cast<unsigned int>(std::lround(support_points[i][axis] * fe.degree)); };
+              if (position(normal) == (1 - f % 2) * fe.degree && position(a) % fe.degree + position(b) % fe.degree == 0)
               {
-                const auto position = [&](const unsigned int axis)
-                { return static_cast<unsigned int>(std::lround(support_points[i][axis] * fe.degree)); };
+                const unsigned int corner = (position(a) + 2 * position(b)) / fe.degree;
+                const Point        X      = mapping.transform_unit_to_real_cell(cell, support_points[i]);
+                record.across[corner]     = cell_dofs[fe.component_to_system_index(0, i)];
+                for (unsigned int c = 0; c < dim; ++c)
+                  record.X_across[corner][c] = X[c];
+              }
+              else if (position(normal) == f % 2 * fe.degree)
+              {
                 const unsigned int n = position(a) + n_1d * position(b);
                 const Point        X = mapping.transform_unit_to_real_cell(cell, support_points[i]);
                 for (unsigned int c = 0; c < dim; ++c)
@@ -73,6 +82,7 @@ namespace Nodus
                   record.X[n][c]    = X[c];
                 }
               }
+            }
             for (unsigned int n = 0; n < n_face_nodes_; ++n)
               if (const auto *const masters = hanging_.masters(record.dofs[n][0] / dim))
                 for (const auto &[master, weight] : *masters)

@@ -29,9 +29,11 @@ namespace Nodus
     double       X[9][dim]; ///< reference positions
     double       orientation;
     unsigned int pair, side, rank;
-    unsigned int number; ///< in its pair and side, in the order of the cells, which does not depend on the ranks
-    unsigned int cell;   ///< active cell index on the rank that owns it
-    unsigned int body;   ///< its number, from 1
+    unsigned int number;    ///< in its pair and side, in the order of the cells, which does not depend on the ranks
+    unsigned int cell;      ///< active cell index on the rank that owns it
+    unsigned int body;      ///< its number, from 1
+    DoFIndex     across[4]; ///< first degrees of freedom of the corners of the face across the cell, ...
+    double       X_across[4][dim]; ///< ... and where they are
 
     /// Node n hangs; one of the nodes that it follows.
     struct Follower
@@ -60,7 +62,7 @@ namespace Nodus
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)
     {
-      archive &dofs &X &orientation &pair &side &rank &number &cell &body &followers;
+      archive &dofs &X &orientation &pair &side &rank &number &cell &body &across &X_across &followers;
     }
     bool operator<(const FaceRecord &other) const
     {

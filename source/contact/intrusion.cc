@@ -30,11 +30,13 @@ namespace Nodus
       Search(const ContactSurfaces    &surfaces,
              const std::vector<Point> &before,
              const std::vector<Point> &now,
-             const double              tolerated)
+             const double              tolerated,
+             const bool                self = false)
           : surfaces_(surfaces)
           , before_(before)
           , now_(now)
           , tolerated_(tolerated)
+          , self_(self)
           , communicator_(surfaces.layout().communicator)
           , rank_(dealii::Utilities::MPI::this_mpi_process(communicator_))
       {
@@ -44,8 +46,10 @@ namespace Nodus
       void find(const std::vector<SurfaceFace> &slaves, const std::vector<SurfaceFace> &masters)
       {
         const Triangles slave = triangles(slaves, now_), master = triangles(masters, now_);
+        see_half_through(master);
         find(slave_side, slave, master, slaves, masters);
-        find(master_side, master, slave, masters, slaves);
+        if (!self_)
+          find(master_side, master, slave, masters, slaves);
       }
 
       /// Nodes of @p side, which has the faces @p own, against the faces @p other. Collective.
@@ -58,7 +62,7 @@ namespace Nodus
         const OtherSide           faces(theirs, before_, now_, communicator_);
         std::vector<NodeQuestion> questions;
         for (const unsigned int n : mine.nodes())
-          questions.push_back(faces.question(before_[n] - lift * tolerated_ * mine.normal(n), now_[n], tolerated_));
+          questions.push_back(question(faces, mine, n, tolerated_));
         std::vector<NodeAnswer>   answers = faces.answers(questions);
         std::vector<unsigned int> deep;
         for (unsigned int i = 0; i < answers.size(); ++i)
@@ -103,15 +107,16 @@ namespace Nodus
 
       /// See visible_part(), of the nodes of the faces @p own, which end @p landing behind the others. On this rank,
       /// but collective.
-      double part_before_passage(const std::vector<SurfaceFace> &own,
-                                 const std::vector<SurfaceFace> &other,
-                                 const double                    landing) const
+      double
+      part_before_passage(const std::vector<SurfaceFace> &own, const std::vector<SurfaceFace> &other, double landing)
       {
-        const Triangles           mine = triangles(own, now_), theirs = triangles(other, now_);
+        const Triangles mine = triangles(own, now_), theirs = triangles(other, now_);
+        see_half_through(theirs);
+        landing = std::min(landing, 0.5 * tolerated_);
         const OtherSide           faces(theirs, before_, now_, communicator_);
         std::vector<NodeQuestion> questions;
         for (const unsigned int n : mine.nodes())
-          questions.push_back(faces.question(before_[n] - lift * landing * mine.normal(n), now_[n], tolerated_));
+          questions.push_back(question(faces, mine, n, landing));
         double part = 1.;
         for (NodeAnswer &answer : faces.answers(questions))
           if (answer.passed(tolerated_))
@@ -180,9 +185,25 @@ namespace Nodus
       }
 
     private:
+      /// Behind its own surface nothing is seen beyond the middle of its cells. Collective.
+      void see_half_through(const Triangles &surface)
+      {
+        if (self_)
+          tolerated_ = std::min(tolerated_, dealii::Utilities::MPI::min(surface.least_visible(), communicator_));
+      }
+
+      /// What to ask about a node, which begins its way outside where it only touches, for what is @p lifted.
+      NodeQuestion
+      question(const OtherSide &faces, const Triangles &mine, const unsigned int n, const double lifted) const
+      {
+        NodeQuestion question = faces.question(before_[n] - lift * lifted * mine.normal(n), now_[n], tolerated_);
+        question.own          = mine.own_node(n);
+        return question;
+      }
+
       Triangles triangles(const std::vector<SurfaceFace> &faces, const std::vector<Point> &x) const
       {
-        return Triangles(faces, rank_, surfaces_.degree(), x);
+        return Triangles(faces, rank_, surfaces_.degree(), x, self_ ? &surfaces_.nodes() : nullptr);
       }
 
       /// Nodes that are deep count unless they were before: then the surfaces are made like that.
@@ -197,7 +218,7 @@ namespace Nodus
         const OtherSide           faces(theirs, before_, before_, communicator_);
         std::vector<NodeQuestion> earlier;
         for (const unsigned int i : deep)
-          earlier.push_back({before_[nodes[i]], before_[nodes[i]], questions[i].reach});
+          earlier.push_back({before_[nodes[i]], before_[nodes[i]], questions[i].reach, questions[i].own});
         const std::vector<NodeAnswer> were = faces.answers(earlier);
         for (unsigned int j = 0; j < deep.size(); ++j)
         {
@@ -257,6 +278,7 @@ namespace Nodus
       const ContactSurfaces    &surfaces_;
       const std::vector<Point> &before_, &now_;
       double                    tolerated_;
+      bool                      self_; ///< both sides are one surface
       MPI_Comm                  communicator_;
       unsigned int              rank_;
       Intrusion                 found_;
@@ -272,7 +294,7 @@ namespace Nodus
     std::vector<DeepNode> found;
     for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
     {
-      if (surfaces.rigid_master(p) != nullptr || !surfaces.acts(p))
+      if (surfaces.rigid_master(p) != nullptr || !surfaces.acts(p) || surfaces.touches_itself(p))
         continue;
       const Search search(surfaces, x, x, tolerated[p]);
       const auto  &slaves = surfaces.slave_faces(p), &masters = surfaces.master_faces(p);
@@ -297,7 +319,7 @@ namespace Nodus
     std::vector<Intrusion> result;
     for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
     {
-      Search search(surfaces, before, now, tolerated[p]);
+      Search search(surfaces, before, now, tolerated[p], surfaces.touches_itself(p));
       if (RigidSurface *const master = surfaces.rigid_master(p); !surfaces.acts(p))
         ;
       else if (master != nullptr)
@@ -320,12 +342,12 @@ namespace Nodus
     {
       if (surfaces.rigid_master(p) != nullptr || !surfaces.acts(p))
         continue;
-      const Search search(surfaces, before, now, 0.5 * reach[p]);
+      Search       search(surfaces, before, now, 0.5 * reach[p], pairs[p].self_contact);
       const double landing = landing_depth * surfaces.face_size(p);
       const auto  &slaves = surfaces.slave_faces(p), &masters = surfaces.master_faces(p);
       part = std::min({part,
                        search.part_before_passage(slaves, masters, landing),
-                       search.part_before_passage(masters, slaves, landing)});
+                       pairs[p].self_contact ? 1. : search.part_before_passage(masters, slaves, landing)});
     }
     return dealii::Utilities::MPI::min(part, surfaces.layout().communicator);
   }

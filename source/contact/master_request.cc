@@ -22,6 +22,8 @@ namespace Nodus
     constexpr double surely_averted = 0.7;
     /// Widening of the sweep of a slave face with the distance: normals differ over the face, and turn.
     constexpr double sweep_slope = 0.5;
+    /// How far a surface looks for itself [mean faces].
+    constexpr double self_reach = 2.;
 
     /// A slave face that looks for partners.
     struct Question
@@ -29,11 +31,12 @@ namespace Nodus
       unsigned int pair;
       double       lower[dim], upper[dim], normal[dim];
       double       ball, sweep; ///< distances within which partners are wanted; negative: no sweep
+      bool nearest; ///< no farther than the nearest one; where a surface touches itself that may be its own wall
 
       template <typename Archive>
       void serialize(Archive &archive, const unsigned int)
       {
-        archive &pair &lower &upper &normal &ball &sweep;
+        archive &pair &lower &upper &normal &ball &sweep &nearest;
       }
       Box box() const
       {
@@ -170,8 +173,9 @@ namespace Nodus
       Vector3 diagonal;
       for (unsigned int c = 0; c < dim; ++c)
         diagonal[c] = -corners[2 * dim * p + dim + c] - corners[2 * dim * p + c];
-      const double automatic =
-          surfaces.rigid_master(p) != nullptr ? std::numeric_limits<double>::max() : 0.25 * diagonal.norm();
+      const double automatic = surfaces.rigid_master(p) != nullptr ? std::numeric_limits<double>::max()
+                               : pairs[p].self_contact             ? self_reach * surfaces.face_size(p)
+                                                                   : 0.25 * diagonal.norm();
       reach.push_back(pairs[p].search_distance > 0. ? pairs[p].search_distance : automatic);
     }
     return reach;
@@ -270,7 +274,7 @@ namespace Nodus
       std::map<unsigned int, std::vector<unsigned int>> asked;
       for (unsigned int r = 0; r < boxes.n_ranks(); ++r)
         for (unsigned int i = 0; i < mine.size(); ++i)
-          if (boxes.within(r, mine[i], mine[i].ball))
+          if (mine[i].nearest && boxes.within(r, mine[i], mine[i].ball))
           {
             questions[r].push_back(mine[i]);
             asked[r].push_back(i);
@@ -318,8 +322,10 @@ namespace Nodus
                                               [&](const unsigned int k) { return surfaces.is_owned(k); }))
         {
           Question question = question_of(face, p, surfaces, x, reach[p]);
-          question.ball     = own[p].nearest(question);
-          question.sweep    = segments ? reach[p] + margin : -1.;
+          question.nearest  = !pairs[p].self_contact;
+          if (question.nearest)
+            question.ball = own[p].nearest(question);
+          question.sweep = segments ? reach[p] + margin : -1.;
           mine.push_back(question);
         }
     }

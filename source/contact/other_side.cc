@@ -136,14 +136,18 @@ namespace Nodus
 
   std::vector<NodeAnswer> OtherSide::answer(const std::vector<NodeQuestion> &questions) const
   {
-    std::vector<Way> ways;
+    std::vector<Way>     ways;
+    std::vector<OwnNode> own;
     for (const NodeQuestion &question : questions)
+    {
       ways.push_back({{question.before, question.now}});
-    std::vector<std::vector<Crossing>> crossings = own_.crossings(ways, before_);
+      own.push_back(question.own);
+    }
+    std::vector<std::vector<Crossing>> crossings = own_.crossings(ways, before_, own);
     std::vector<NodeAnswer>            result;
     for (unsigned int i = 0; i < questions.size(); ++i)
     {
-      const Height height = own_.height(questions[i].now, questions[i].reach);
+      const Height height = own_.height(questions[i].now, questions[i].reach, questions[i].own);
       result.push_back({height.distance, height.over, height.behind, height.normal, std::move(crossings[i])});
     }
     return result;

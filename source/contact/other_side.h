@@ -14,15 +14,16 @@ namespace Nodus
   /// A node that asks where it is.
   struct NodeQuestion
   {
-    Point  before, now;
-    double reach; ///< farther faces do not count [length]
+    Point   before, now;
+    double  reach;    ///< farther faces do not count [length]
+    OwnNode own = {}; ///< of the same surface
 
     dealii::BoundingBox<dim> box() const;
 
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)
     {
-      archive &before &now &reach;
+      archive &before &now &reach &own;
     }
   };
 

@@ -174,8 +174,15 @@ namespace Nodus
         partnered_[s] = false;
       else if (geometry.rigid[p] != nullptr)
         rigid = geometry.closest_on_rigid(p, sites.x[s], sites.normal[s], tolerance);
+      else if (surfaces.is_point(s))
+      {
+        const SlavePoint &point = surfaces.point(s);
+        pairing.master =
+            geometry.closest_to_face(p, point.face, point.xi, point.eta, sites.x[s], sites.normal[s], tolerance);
+      }
       else
-        pairing.master = geometry.search[p].closest(sites.x[s], sites.normal[s], geometry.reach[p], tolerance);
+        pairing.master =
+            geometry.closest_to_node(p, surfaces.slave_nodes()[s].node, sites.x[s], sites.normal[s], tolerance);
       partnered_[s]       = rigid.found || pairing.master.found();
       const bool averages = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
       const bool paired   = averages ? averaged.covered(s) : pairing.master.found() || rigid.found;

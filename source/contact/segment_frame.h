@@ -116,16 +116,26 @@ namespace Nodus
     log_part                 = Row::Zero();
     const double  sign       = master.face(polygon.master).orientation;
     const Vector3 twice_area = cross_of_diagonals(master_corner), normal = sign / twice_area.norm() * twice_area;
-    const double  cosine = -(normal * plane.normal), rate = facing(cosine).slope / polygon.part;
-    if (rate == 0.)
+    const double  cosine = -(normal * plane.normal);
+    const Fading  faces  = facing(cosine);
+    if (faces.slope == 0. && polygon.near_rate == 0.)
       return;
-    const Plane2 along = in_plane(normal);
+    // of the height, (middle of the slave cell - that of the master cell) . normal/cosine, too
+    const Vector3 apart  = cell_middle(corner) - cell_middle(master_corner);
+    const double  height = apart * normal / cosine, near_rate = polygon.near_rate / cosine,
+                 rate   = faces.slope / faces.part - near_rate * height;
+    const Plane2  along = in_plane(normal);
+    const Vector3 turns = -rate * (plane.normal + cosine * normal) + near_rate * (apart - (apart * normal) * normal);
+    const auto    node  = [&](const unsigned int at)
+    { return n_slave + cell_node(master.degree(), polygon.master_cell, at); };
     log_part -= rate * (along[0] * tilt.row(0) + along[1] * tilt.row(1));
-    add_change(
-        master_corner,
-        -rate * sign / twice_area.norm() * (plane.normal + cosine * normal),
-        [&](const unsigned int at) { return n_slave + cell_node(master.degree(), polygon.master_cell, at); },
-        log_part);
+    add_change(master_corner, sign / twice_area.norm() * turns, node, log_part);
+    for (unsigned int at = 0; at < 4; ++at)
+    {
+      log_part.template segment<3>(3 * cell_node(master.degree(), polygon.cell, at)) +=
+          0.25 * near_rate * eigen(normal);
+      log_part.template segment<3>(3 * node(at)) -= 0.25 * near_rate * eigen(normal);
+    }
   }
 
   template <int columns>

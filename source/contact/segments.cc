@@ -1,4 +1,5 @@
 #include "contact/segments.h"
+#include "contact/clipping.h"
 
 #include <deal.II/base/quadrature_lib.h>
 
@@ -10,147 +11,10 @@ namespace Nodus
 {
   namespace
   {
-    using Point2 = dealii::Point<2>;
-
     /// Overlaps below this fraction of a slave cell are round-off.
     constexpr double smallest_overlap = 1e-10;
-
-    double cross(const dealii::Tensor<1, 2> &a, const dealii::Tensor<1, 2> &b)
-    {
-      return a[0] * b[1] - a[1] * b[0];
-    }
-
-    /// A convex polygon; two quadrilaterals overlap in at most eight corners.
-    struct Polygon
-    {
-      using Corner = SegmentTrace::Corner;
-
-      std::array<Point2, 16>        corner;
-      std::array<Corner, 16>        origin;
-      std::array<unsigned char, 16> line; ///< that the edge to the next corner lies on: of the master, slave_line +
-                                          ///< that of the slave
-      unsigned int n = 0;
-
-      void add(const Point2 &p, const Corner &what, const unsigned char along)
-      {
-        corner[n] = p;
-        origin[n] = what;
-        line[n++] = along;
-      }
-      double area() const
-      {
-        double twice = 0.;
-        for (unsigned int i = 2; i < n; ++i)
-          twice += cross(corner[i - 1] - corner[0], corner[i] - corner[0]);
-        return 0.5 * twice;
-      }
-      /// Triangles fan out from corner 0. What rules of integration leave depends on which it is: it is to stay the
-      /// same where a corner splits in two, or the integrals would jump. The farthest one in a direction that edges
-      /// hardly ever lie across does.
-      void begin_at_extreme()
-      {
-        const auto   along = [](const Point2 &p) { return 0.854 * p[0] + 0.520 * p[1]; };
-        unsigned int first = 0;
-        for (unsigned int i = 1; i < n; ++i)
-          if (along(corner[i]) > along(corner[first]))
-            first = i;
-        if (first == 0)
-          return;
-        const Polygon before = *this;
-        for (unsigned int i = 0; i < n; ++i, ++first)
-        {
-          if (first == n)
-            first = 0;
-          corner[i] = before.corner[first];
-          origin[i] = before.origin[first];
-          line[i]   = before.line[first];
-        }
-      }
-      void make_counterclockwise()
-      {
-        if (area() >= 0.)
-          return;
-        std::reverse(corner.begin(), corner.begin() + n);
-        std::reverse(origin.begin(), origin.begin() + n);
-      }
-    };
-    constexpr unsigned char slave_line = 4;
-
-    /// A cell as the plane sees it, counterclockwise, and its bounding box.
-    struct Shadow
-    {
-      Polygon polygon;
-      Point2  low, high;
-
-      Shadow(const std::array<Point, 4> &corner, const CellPlane &plane)
-          : low(plane(corner[0]))
-          , high(low)
-      {
-        for (unsigned char i = 0; i < corner.size(); ++i)
-        {
-          const Point2 p = plane(corner[i]);
-          polygon.add(p, {Polygon::Corner::of_master, {{i, i}}, {{i, i}}}, i);
-          for (unsigned int c = 0; c < 2; ++c)
-          {
-            low[c]  = std::min(low[c], p[c]);
-            high[c] = std::max(high[c], p[c]);
-          }
-        }
-        polygon.make_counterclockwise();
-      }
-      bool apart(const Shadow &other) const
-      {
-        return low[0] > other.high[0] || high[0] < other.low[0] || low[1] > other.high[1] || high[1] < other.low[1];
-      }
-    };
-
-    /// Where the edge of @p polygon from corner @p i leaves the half plane of edge @p e of the @p window, or enters it.
-    SegmentTrace::Corner crossing(const Polygon     &polygon,
-                                  const unsigned int i,
-                                  const Polygon     &shadow,
-                                  const Polygon     &window,
-                                  const unsigned int e)
-    {
-      SegmentTrace::Corner corner;
-      const auto of = [](const Polygon &cell, const unsigned int at) { return cell.origin[at % 4].master[0]; };
-      if (polygon.line[i] >= slave_line) // edges of the window meet in its corners
-      {
-        const unsigned int before = polygon.line[i] - slave_line;
-        const auto         at     = of(window, before == (e + 1) % 4 ? before : e);
-        corner.kind               = SegmentTrace::Corner::of_slave;
-        corner.slave              = {{at, at}};
-        return corner;
-      }
-      corner.kind   = SegmentTrace::Corner::crossing;
-      corner.master = {{of(shadow, polygon.line[i]), of(shadow, polygon.line[i] + 1u)}};
-      corner.slave  = {{of(window, e), of(window, e + 1)}};
-      return corner;
-    }
-
-    /// The part of @p shadow inside the convex @p window (Sutherland & Hodgman 1974).
-    Polygon clip(const Polygon &shadow, const Polygon &window)
-    {
-      Polygon polygon = shadow;
-      for (unsigned int e = 0; e < window.n && polygon.n > 0; ++e)
-      {
-        const Point2 &a = window.corner[e], &b = window.corner[(e + 1) % window.n];
-        const auto    inside = [&](const Point2 &p) { return cross(b - a, p - a); };
-        Polygon       rest;
-        for (unsigned int i = 0; i < polygon.n && rest.n + 2 < rest.corner.size(); ++i)
-        {
-          const Point2       &p = polygon.corner[i], &q = polygon.corner[(i + 1) % polygon.n];
-          const double        s = inside(p), t = inside(q);
-          const unsigned char along = t < 0. ? slave_line + e : polygon.line[i];
-          if (s >= 0.)
-            rest.add(p, polygon.origin[i], s > 0. ? polygon.line[i] : along);
-          if ((s > 0. && t < 0.) || (s < 0. && t > 0.))
-            rest.add(p + s / (s - t) * (q - p), crossing(polygon, i, shadow, window, e), along);
-        }
-        polygon = rest;
-      }
-      polygon.begin_at_extreme();
-      return polygon;
-    }
+    /// Of the reach: a face this much nearer than another one is before it.
+    constexpr double round_off = 1e-6;
 
     unsigned int n_cells(const unsigned int degree)
     {
@@ -256,26 +120,211 @@ namespace Nodus
       return dealii::BoundingBox<dim>({low, high});
     }
 
-    /// What a master cell covers of a slave cell, which is @p window in the @p plane, and the @p part that its points
-    /// count with; no corners where that is next to nothing or they do not face each other.
-    Polygon overlap(const Shadow          &window,
-                    const CellPlane       &plane,
-                    const double           cell_area,
-                    const SurfaceGeometry &master,
-                    const unsigned int     m,
-                    const unsigned int     master_cell,
-                    double                &part)
+    /// What a master cell covers of a slave cell.
+    struct Overlap
     {
-      const auto master_corner = cell_corners(master, m, master_cell);
-      part                     = facing(-(cell_normal(master_corner, master.face(m).orientation) * plane.normal)).part;
-      if (part == 0.)
-        return Polygon();
-      const Shadow shadow(master_corner, plane);
-      if (shadow.apart(window))
-        return Polygon();
-      const Polygon polygon = clip(shadow.polygon, window.polygon);
-      return polygon.n < 3 || polygon.area() < smallest_overlap * cell_area ? Polygon() : polygon;
-    }
+      unsigned int         m, cell;   ///< master face, its cell
+      double               part;      ///< that its points count with
+      double               near_rate; ///< SegmentTrace::Polygon
+      Polygon              polygon;
+      double               at_origin; ///< height of the master cell over the plane, where the origin of that is, ...
+      dealii::Tensor<1, 2> slope;     ///< ... and how it rises
+
+      double height(const Point2 &p) const
+      {
+        return at_origin + slope * p;
+      }
+    };
+
+    /// Integration points of one slave face.
+    class FacePoints
+    {
+    public:
+      FacePoints(const ContactGeometry    &geometry,
+                 const unsigned int        pair,
+                 const unsigned int        f,
+                 std::vector<MortarPoint> &points,
+                 SegmentTrace             &trace)
+          : slave_(geometry.slave[pair])
+          , master_(geometry.master[pair])
+          , search_(geometry.search[pair])
+          , self_(geometry.self[pair].get())
+          , reach_(geometry.reach[pair])
+          , f_(f)
+          , degree_(slave_.degree())
+          , points_(points)
+          , trace_(trace)
+      {
+      }
+
+      Coverage find()
+      {
+        points_.clear();
+        trace_.polygons.clear();
+        trace_.places.clear();
+        for (unsigned int cell = 0; cell < n_cells(degree_); ++cell)
+        {
+          const auto      corner = cell_corners(slave_, f_, cell);
+          const CellPlane plane(corner, slave_.face(f_).orientation);
+          const FlatFace  slave_facet = facet(slave_, f_, plane);
+          find_overlaps(corner, plane);
+          for (const Overlap &overlap : overlaps())
+            if ((self_ == nullptr || self_->is_slave(f_, overlap.m)) && !add_points(cell, plane, slave_facet, overlap))
+            {
+              points_.clear();
+              trace_.places.clear();
+              return {}; // the face is folded over: no partner
+            }
+        }
+        if (points_.empty())
+          return {};
+        return {covered_ * covered_ / (face_area_ * twice_counted_), twice_counted_ / covered_};
+      }
+
+    private:
+      /// Those of the present slave cell.
+      static std::vector<Overlap> &overlaps()
+      {
+        thread_local std::vector<Overlap> overlaps;
+        return overlaps;
+      }
+
+      /// With all master cells that face the slave cell.
+      void find_overlaps(const std::array<Point, 4> &corner, const CellPlane &plane)
+      {
+        thread_local std::vector<unsigned int> candidates;
+        const Shadow                           window(corner, plane);
+        const double                           cell_area = window.polygon.area();
+        const Vector3                          middle    = cell_middle(corner);
+        face_area_ += cell_area;
+        overlaps().clear();
+        search_.candidates(swept_box(corner, plane.normal, reach_), candidates);
+        for (const unsigned int m : candidates)
+          if (self_ == nullptr ||
+              (self_->apart(f_, m) && !self_->is_beyond(m, plane.origin, plane.normal, self_->most_visible(f_))))
+            for (unsigned int cell = 0; cell < n_cells(degree_); ++cell)
+              add_overlap(window, plane, middle, cell_area, m, cell);
+      }
+
+      /// Unless it is next to nothing, or the cells do not face each other.
+      void add_overlap(const Shadow      &window,
+                       const CellPlane   &plane,
+                       const Vector3     &slave_middle,
+                       const double       cell_area,
+                       const unsigned int m,
+                       const unsigned int cell)
+      {
+        const auto    corner = cell_corners(master_, m, cell);
+        const Vector3 normal = cell_normal(corner, master_.face(m).orientation);
+        const double  cosine = -(normal * plane.normal);
+        double        part   = facing(cosine).part;
+        if (part == 0.)
+          return;
+        const Shadow shadow(corner, plane);
+        if (shadow.apart(window))
+          return;
+        const Polygon polygon = clip(shadow.polygon, window.polygon);
+        if (polygon.n < 3 || polygon.area() < smallest_overlap * cell_area)
+          return;
+        const Vector3 rises = normal / cosine, middle = cell_middle(corner);
+        double        near_rate = 0.;
+        if (self_ != nullptr)
+        {
+          const double height = (slave_middle - middle) * rises;
+          const Fading near   = self_->near_part(std::abs(height));
+          if (near.part == 0.)
+            return;
+          part *= near.part;
+          near_rate = (height < 0. ? -near.slope : near.slope) / near.part;
+        }
+        overlaps().push_back({m,
+                              cell,
+                              part,
+                              near_rate,
+                              polygon,
+                              (plane.origin - middle) * rises,
+                              Point2(plane.axis[0] * rises, plane.axis[1] * rises)});
+      }
+
+      /// Whether the surface that touches itself has another face before this one at @p p.
+      bool is_hidden(const Overlap &overlap, const Point2 &p) const
+      {
+        const double height = std::abs(overlap.height(p)) - round_off * reach_;
+        return std::any_of(overlaps().begin(),
+                           overlaps().end(),
+                           [&](const Overlap &other)
+                           {
+                             const double before = other.height(p);
+                             return other.m != overlap.m && std::abs(before) < height &&
+                                    before > -self_->visible(f_, 0.5, 0.5, other.m, 0.5, 0.5) &&
+                                    other.polygon.contains(p);
+                           });
+      }
+
+      /// False where the slave face is folded over.
+      bool
+      add_points(const unsigned int cell, const CellPlane &plane, const FlatFace &slave_facet, const Overlap &overlap)
+      {
+        const Polygon &polygon = overlap.polygon;
+        const auto    &rule    = segment_rule(degree_);
+        trace_.polygons.push_back({cell,
+                                   overlap.m,
+                                   overlap.cell,
+                                   overlap.part,
+                                   overlap.near_rate,
+                                   polygon.n,
+                                   polygon.corner,
+                                   polygon.origin});
+        const FlatFace master_face = smooth_face(master_, overlap.m, plane);
+        double         xi = (cell % degree_ + 0.5) / degree_, eta = (cell / degree_ + 0.5) / degree_;
+        const double   middle_xi = (overlap.cell % degree_ + 0.5) / degree_,
+                     middle_eta  = (overlap.cell / degree_ + 0.5) / degree_;
+        Projection master{overlap.m, middle_xi, middle_eta};
+        for (unsigned int t = 2; t < polygon.n; ++t)
+        {
+          const auto   a = polygon.corner[t - 1] - polygon.corner[0], b = polygon.corner[t] - polygon.corner[0];
+          const double twice_area = cross(a, b);
+          for (unsigned int q = 0; q < rule.size(); ++q)
+          {
+            const Point2 p = polygon.corner[0] + rule.point(q)[0] * a + rule.point(q)[1] * b;
+            if (!slave_facet.invert(p, xi, eta))
+              return false;
+            // the partner lies on the smoothed faces, straight across
+            const Point x = slave_.position(f_, xi, eta);
+            if (!master_face.invert(plane(x), master.xi, master.eta))
+            {
+              master.xi  = middle_xi;
+              master.eta = middle_eta;
+              continue;
+            }
+            const Vector3 gap = master_.position(overlap.m, master.xi, master.eta) - x;
+            if (gap.norm() > reach_)
+              continue;
+            if (self_ != nullptr &&
+                (-(gap * plane.normal) > self_->visible(f_, xi, eta, overlap.m, master.xi, master.eta) ||
+                 is_hidden(overlap, p)))
+              continue;
+            const double area = overlap.part * twice_area * rule.weight(q);
+            points_.push_back({xi, eta, area / slave_facet.area(xi, eta), master});
+            trace_.places.push_back({static_cast<unsigned int>(trace_.polygons.size() - 1),
+                                     static_cast<unsigned char>(t),
+                                     static_cast<unsigned char>(q)});
+            covered_ += area;
+            twice_counted_ += overlap.part * area;
+          }
+        }
+        return true;
+      }
+
+      const SurfaceGeometry    &slave_, &master_;
+      const MasterSearch       &search_;
+      const SelfContact *const  self_; ///< or nullptr
+      const double              reach_;
+      const unsigned int        f_, degree_;
+      std::vector<MortarPoint> &points_;
+      SegmentTrace             &trace_;
+      double                    face_area_ = 0., covered_ = 0., twice_counted_ = 0.; ///< with the part, with its square
+    };
   } // namespace
 
   CellPlane::CellPlane(const std::array<Point, 4> &corner, const double orientation)
@@ -296,80 +345,12 @@ namespace Nodus
     return rules[degree - 1];
   }
 
-  Coverage segment_points(const SurfaceGeometry    &slave,
+  Coverage segment_points(const ContactGeometry    &geometry,
+                          const unsigned int        pair,
                           const unsigned int        f,
-                          const SurfaceGeometry    &master,
-                          const MasterSearch       &search,
-                          const double              reach,
                           std::vector<MortarPoint> &points,
                           SegmentTrace             &trace)
   {
-    const unsigned int degree = slave.degree();
-    const auto        &rule   = segment_rule(degree);
-    trace.polygons.clear();
-    trace.places.clear();
-
-    thread_local std::vector<unsigned int> candidates;
-    points.clear();
-    double face_area = 0., covered = 0., twice_counted = 0.; // with the part, with its square
-    for (unsigned int cell = 0; cell < n_cells(degree); ++cell)
-    {
-      const auto      corner = cell_corners(slave, f, cell);
-      const CellPlane plane(corner, slave.face(f).orientation);
-      const FlatFace  slave_facet = facet(slave, f, plane);
-      const Shadow    window(corner, plane);
-      const double    cell_area = window.polygon.area();
-      face_area += cell_area;
-
-      search.candidates(swept_box(corner, plane.normal, reach), candidates);
-      for (const unsigned int m : candidates)
-        for (unsigned int master_cell = 0; master_cell < n_cells(degree); ++master_cell)
-        {
-          double        part;
-          const Polygon polygon = overlap(window, plane, cell_area, master, m, master_cell, part);
-          if (polygon.n == 0)
-            continue;
-          trace.polygons.push_back({cell, m, master_cell, part, polygon.n, polygon.corner, polygon.origin});
-          const FlatFace master_face = smooth_face(master, m, plane);
-          double         xi = (cell % degree + 0.5) / degree, eta = (cell / degree + 0.5) / degree;
-          double master_xi = (master_cell % degree + 0.5) / degree, master_eta = (master_cell / degree + 0.5) / degree;
-          for (unsigned int t = 2; t < polygon.n; ++t)
-          {
-            const auto   a = polygon.corner[t - 1] - polygon.corner[0], b = polygon.corner[t] - polygon.corner[0];
-            const double twice_area = cross(a, b);
-            for (unsigned int q = 0; q < rule.size(); ++q)
-            {
-              const Point2 p = polygon.corner[0] + rule.point(q)[0] * a + rule.point(q)[1] * b;
-              if (!slave_facet.invert(p, xi, eta))
-              {
-                points.clear();
-                trace.places.clear();
-                return {}; // the face is folded over: no partner
-              }
-              // the partner lies on the smoothed faces, straight across
-              const Point x = slave.position(f, xi, eta);
-              if (!master_face.invert(plane(x), master_xi, master_eta))
-              {
-                master_xi  = (master_cell % degree + 0.5) / degree;
-                master_eta = (master_cell / degree + 0.5) / degree;
-                continue;
-              }
-              const Vector3 gap = master.position(m, master_xi, master_eta) - x;
-              if (gap.norm() > reach)
-                continue;
-              const double area = part * twice_area * rule.weight(q);
-              points.push_back({xi, eta, area / slave_facet.area(xi, eta), {m, master_xi, master_eta}});
-              trace.places.push_back({static_cast<unsigned int>(trace.polygons.size() - 1),
-                                      static_cast<unsigned char>(t),
-                                      static_cast<unsigned char>(q)});
-              covered += area;
-              twice_counted += part * area;
-            }
-          }
-        }
-    }
-    if (points.empty())
-      return {};
-    return {covered * covered / (face_area * twice_counted), twice_counted / covered};
+    return FacePoints(geometry, pair, f, points, trace).find();
   }
 } // namespace Nodus

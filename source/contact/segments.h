@@ -59,6 +59,7 @@ namespace Nodus
     {
       unsigned int                     cell, master, master_cell; ///< master: face
       double                           part;                      ///< that the points on it count with (eq. J8)
+      double                           near_rate; ///< of the logarithm of the part, by cell_height() (eq. O3)
       unsigned int                     n;
       std::array<dealii::Point<2>, 16> x; ///< corners in the plane
       std::array<Corner, 16>           corner;
@@ -72,6 +73,12 @@ namespace Nodus
     std::vector<Polygon> polygons;
     std::vector<Place>   places;
   };
+
+  /// The middle of a cell.
+  inline Vector3 cell_middle(const std::array<Point, 4> &corner)
+  {
+    return 0.25 * (Vector3(corner[0]) + corner[1] + corner[2] + corner[3]);
+  }
 
   /// How much a master cell counts that looks at a slave cell with this cosine, 1 being straight at it (eq. J8).
   inline Fading facing(const double cosine)
@@ -89,15 +96,15 @@ namespace Nodus
   /// Rule on the triangles of the overlaps.
   const dealii::Quadrature<2> &segment_rule(unsigned int degree);
 
-  /// Integration points of slave face @p f on its overlaps with the master faces, seen along the slave normal: the
-  /// faces (of degree 2: their four quarters) are projected on the plane of the slave one, clipped as convex polygons
-  /// and triangulated (Puso & Laursen 2004). Polynomials of the product of slave and master shape functions are
-  /// integrated exactly where both faces are parallelograms. @p points and @p trace are overwritten.
-  Coverage segment_points(const SurfaceGeometry    &slave,
+  /// Integration points of slave face @p f of a pair on its overlaps with the master faces, seen along the slave
+  /// normal: the faces (of degree 2: their four quarters) are projected on the plane of the slave one, clipped as
+  /// convex polygons and triangulated (Puso & Laursen 2004). Polynomials of the product of slave and master shape
+  /// functions are integrated exactly where both faces are parallelograms. Where the surface touches itself, the face
+  /// has points on the nearest of several faces, and only where it is the slave of that. @p points and @p trace are
+  /// overwritten.
+  Coverage segment_points(const ContactGeometry    &geometry,
+                          unsigned int              pair,
                           unsigned int              f,
-                          const SurfaceGeometry    &master,
-                          const MasterSearch       &search,
-                          double                    reach,
                           std::vector<MortarPoint> &points,
                           SegmentTrace             &trace);
 } // namespace Nodus

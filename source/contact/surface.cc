@@ -1,6 +1,7 @@
 #include "contact/surface.h"
 #include "base/deal_ii_versions.h"
 #include "contact/master_request.h"
+#include "contact/walls.h"
 #include "mesh/region.h"
 #include "parallel/owned_values.h"
 #include "parallel/sparse_exchange.h"
@@ -18,6 +19,8 @@ namespace Nodus
   {
     /// Master faces are fetched anew when a node has moved by this part of the smallest mean slave face size.
     constexpr double relative_moves = 0.2;
+    /// Walls thicker than so many mean faces are as good as this: surfaces look for themselves half as far.
+    constexpr double wall_reach = 4.;
   } // namespace
 
   ContactSurfaces::ContactSurfaces(const std::vector<ContactPairParameters> &pairs,
@@ -71,6 +74,11 @@ namespace Nodus
       own.insert(own.end(), directory_.own(p, master_side).begin(), directory_.own(p, master_side).end());
     take_master_faces(own);
     measure_faces();
+    if (std::any_of(pairs.begin(), pairs.end(), [](const auto &pair) { return pair.self_contact; }))
+    {
+      walls_ = cells_through_walls(*this, wall_reach);
+      gather_walls();
+    }
     if (dealii::Utilities::MPI::n_mpi_processes(communicator_) > 1 && n_pairs() > 0)
       fetch(std::vector<Vector3>(nodes_.size()));
   }
@@ -96,6 +104,9 @@ namespace Nodus
       add_node(record.dofs[n][0], record.X[n]);
     for (const FaceRecord::Follower &follower : record.followers)
       add_node(follower.dof, follower.X);
+    if (pairs_[record.pair].self_contact)
+      for (unsigned int n = 0; n < 4; ++n)
+        add_node(record.across[n], record.X_across[n]);
   }
 
   void ContactSurfaces::link_followers(const std::vector<FaceRecord> &records)
@@ -127,6 +138,9 @@ namespace Nodus
     face.number      = record.number;
     face.cell        = record.cell;
     face.body        = record.body;
+    if (pairs_[record.pair].self_contact)
+      for (unsigned int n = 0; n < 4; ++n)
+        face.across[n] = node(record.across[n]);
     for (const auto &follower : record.followers)
     {
       if (face.hanging.empty() || face.hanging.back().n != follower.n)
@@ -179,6 +193,16 @@ namespace Nodus
     for (unsigned int p = 0; p < n_pairs(); ++p)
       if (rigid_masters_[p])
         master_face_size_[p] = face_size_[p];
+  }
+
+  bool ContactSurfaces::has_rigid_masters() const
+  {
+    return std::any_of(rigid_masters_.begin(), rigid_masters_.end(), [](const auto &master) { return bool(master); });
+  }
+
+  bool ContactSurfaces::touches_itself(const unsigned int pair) const
+  {
+    return pairs_[pair].self_contact;
   }
 
   void ContactSurfaces::move_rigid_masters(const double begin, const double end)
@@ -252,6 +276,7 @@ namespace Nodus
       numbers.push_back(node.dofs[0] / dim);
     gather_.reinit(numbers, layout_.owned[0].n_elements() / dim, communicator_);
     gather_fixed();
+    gather_walls();
   }
 
   Point ContactSurfaces::site_position(const unsigned int site) const
@@ -283,6 +308,16 @@ namespace Nodus
       for (unsigned int c = 0; c < dim; ++c)
         held_.fixed[i][c] = nodal[i][c] > 0.5;
     find_rigid_nodes();
+  }
+
+  void ContactSurfaces::gather_walls()
+  {
+    if (walls_.size() == 0)
+      return;
+    std::vector<Vector3> cells;
+    gather(walls_, cells);
+    for (unsigned int i = 0; i < nodes_.size(); ++i)
+      nodes_[i].cells_through = std::max(1., cells[i][0]);
   }
 
   void ContactSurfaces::set_rigid_bodies(const std::vector<unsigned int> &numbers)

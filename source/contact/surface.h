@@ -27,8 +27,9 @@ namespace Nodus
   struct SurfaceNode
   {
     std::array<DoFIndex, dim> dofs;
-    Point                     X;     ///< reference position
-    unsigned int              owner; ///< rank that owns its degrees of freedom
+    Point                     X;                  ///< reference position
+    unsigned int              owner;              ///< rank that owns its degrees of freedom
+    double                    cells_through = 1.; ///< the wall behind it, see cells_through_walls()
 
     /// Of a hanging node: what it follows, indices into ContactSurfaces::nodes() and weights, and how far its reference
     /// position is from theirs.
@@ -54,8 +55,8 @@ namespace Nodus
   /// How messages call a pair: its number, and its name when it has one.
   std::string pair_label(const std::vector<ContactPairParameters> &pairs, unsigned int pair);
 
-  /// Divides the cells among the ranks so that those with slave faces, where contact is searched and assembled, do not
-  /// all come on top of an equal share, now and whenever the mesh changes. @p mapping must outlive that. Collective.
+  /// Divides the cells among the ranks so that those with slave faces do not all come on top of an equal share, now and
+  /// whenever the mesh changes. @p mapping must outlive that. Collective.
   void
   balance_contact(const std::vector<ContactPairParameters> &pairs, const dealii::Mapping<dim> &mapping, Bodies &bodies);
 
@@ -262,13 +263,11 @@ namespace Nodus
     {
       return rigid_masters_[pair].get();
     }
-    bool has_rigid_masters() const
-    {
-      return std::any_of(rigid_masters_.begin(), rigid_masters_.end(), [](const auto &master) { return bool(master); });
-    }
-    /// Moves them to where they are at the end of an increment. @throws InputError on every rank
+    bool has_rigid_masters() const;
+    bool touches_itself(unsigned int pair) const; ///< both sides have the same faces
+    /// Moves them to where they are at the end of an increment, or, those that a body of the model carries, to where
+    /// the nodes are: @p positions of all nodes. @throws InputError on every rank
     void move_rigid_masters(double begin, double end);
-    /// The same for those that a body of the model carries, to where the nodes are: @p positions of all nodes.
     void place_carried_masters(const std::vector<Point> &positions);
 
     /// Fetches the master faces near this rank's slave faces at displacement @p u, unless no surface node has moved
@@ -331,8 +330,7 @@ namespace Nodus
       f(layout_.rigid(body, dim + k), -arm[j]);
     }
 
-    /// x = X + u for all nodes.
-    std::vector<Point> positions(const std::vector<Vector3> &u) const;
+    std::vector<Point> positions(const std::vector<Vector3> &u) const; ///< x = X + u for all nodes
     std::vector<Point> reference_positions() const;
 
   private:
@@ -353,6 +351,7 @@ namespace Nodus
     void        link_followers(const std::vector<FaceRecord> &records);
     SurfaceFace make_face(const FaceRecord &record) const;
     void        gather_fixed();
+    void        gather_walls();
     void        find_rigid_nodes();
 
     /// The places with a jump, a frame and statuses, and what carries multipliers.
@@ -389,6 +388,7 @@ namespace Nodus
     std::vector<std::unique_ptr<RigidSurface>> rigid_masters_; ///< of each pair, or nullptr
     std::vector<double>                        face_size_, master_face_size_;
     Vector                                     fetched_at_; ///< displacement
+    Vector                                     walls_;      ///< empty, or cells_through_walls()
     Held                                       held_;
     BlockLayout                                layout_;
     SurfaceGather                              gather_;

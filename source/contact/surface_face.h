@@ -19,6 +19,9 @@ namespace Nodus
     unsigned int              cell   = 0;  ///< active cell index on its owner
     unsigned int              body   = 0;  ///< its number, from 1
 
+    /// Of pairs with self-contact: the corners of the face across the cell, in the order of this one's.
+    std::array<unsigned int, 4> across = {};
+
     /// A node of the face that hangs, and what it follows: indices into ContactSurfaces::nodes(), and weights.
     struct Follower
     {

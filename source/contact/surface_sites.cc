@@ -207,14 +207,15 @@ namespace Nodus
     using Ends                      = std::pair<DoFIndex, DoFIndex>; // of a diagonal
     std::map<Ends, unsigned int> pair_of_face;
     for (unsigned int p = 0; p < n_pairs(); ++p)
-      for (const FaceRecord &face : directory_.own(p, slave_side))
-        if (const unsigned int other =
-                pair_of_face.emplace(Ends(face.dofs[0][0], face.dofs[n_face_nodes - 1][0]), p).first->second;
-            other != p)
-          return pair_label(pairs_, other) + " and " + pair_label(pairs_, p) + " overlap: the face at node " +
-                 coordinates(Point(face.X[0][0], face.X[0][1], face.X[0][2])) +
-                 " is slave in both; make the slave regions disjoint with 'Slave where', join the pairs, or give one "
-                 "pair both masters, as in 'Master body = 2, 3'";
+      if (!pairs_[p].self_contact) // what touches itself may touch others as well
+        for (const FaceRecord &face : directory_.own(p, slave_side))
+          if (const unsigned int other =
+                  pair_of_face.emplace(Ends(face.dofs[0][0], face.dofs[n_face_nodes - 1][0]), p).first->second;
+              other != p)
+            return pair_label(pairs_, other) + " and " + pair_label(pairs_, p) + " overlap: the face at node " +
+                   coordinates(Point(face.X[0][0], face.X[0][1], face.X[0][2])) +
+                   " is slave in both; make the slave regions disjoint with 'Slave where', join the pairs, or give one "
+                   "pair both masters, as in 'Master body = 2, 3'";
     return "";
   }
 
@@ -240,7 +241,9 @@ namespace Nodus
     for (unsigned int k = 1; k < sites_.n_owned_nodes; ++k)
       for (unsigned int l = k; l-- > 0 && sites_.nodes[l].node == sites_.nodes[k].node;)
       {
-        const bool smooth = normal[k] * normal[l] > smooth_seam_cosine * normal[k].norm() * normal[l].norm();
+        const bool self =
+            pairs_[sites_.nodes[k].pair].self_contact || pairs_[sites_.nodes[l].pair].self_contact; // elsewhere
+        const bool smooth = !self && normal[k] * normal[l] > smooth_seam_cosine * normal[k].norm() * normal[l].norm();
         if (!smooth && !rubs_in_points(k) && !rubs_in_points(l))
           continue;
         return pair_label(pairs_, sites_.nodes[l].pair) + " and " + pair_label(pairs_, sites_.nodes[k].pair) +
@@ -260,7 +263,7 @@ namespace Nodus
     for (unsigned int p = 0; p < n_pairs(); ++p)
       for (const FaceRecord &face : directory_.own(p, master_side))
       {
-        bool slave = true;
+        bool slave = !pairs_[p].self_contact;
         for (unsigned int n = 0; n < n_face_nodes && slave; ++n)
         {
           const auto at = node_of_dof_.find(face.dofs[n][0]);

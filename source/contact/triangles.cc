@@ -1,4 +1,5 @@
 #include "contact/triangles.h"
+#include "contact/self_contact.h"
 
 #include <deal.II/numerics/rtree.h>
 
@@ -142,7 +143,8 @@ namespace Nodus
   Triangles::Triangles(const std::vector<SurfaceFace> &faces,
                        const unsigned int              rank,
                        const unsigned int              degree,
-                       const std::vector<Point>       &x)
+                       const std::vector<Point>       &x,
+                       const std::vector<SurfaceNode> *nodes)
       : x_(x)
       , normals_(x.size())
       , on_rim_(x.size(), 0)
@@ -161,7 +163,7 @@ namespace Nodus
           const bool         turn = face.orientation < 0.;
           for (const auto &[b, c] : {std::make_pair(1u, 2u), {2u, 3u}})
           {
-            all.push_back({{{n[0], n[turn ? c : b], n[turn ? b : c]}}, {{false, false, false}}});
+            all.push_back({{{n[0], n[turn ? c : b], n[turn ? b : c]}}, {{false, false, false}}, &face});
             own.push_back(face.owner == rank);
           }
         }
@@ -209,6 +211,55 @@ namespace Nodus
       if (const double length = normal.norm(); length > 0.)
         normal /= length;
     tree_ = std::make_unique<Tree>(leaves);
+    if (nodes != nullptr)
+      know_nodes(faces, degree, *nodes);
+  }
+
+  void Triangles::know_nodes(const std::vector<SurfaceFace> &faces,
+                             const unsigned int              degree,
+                             const std::vector<SurfaceNode> &nodes)
+  {
+    own_.resize(x_.size());
+    for (const unsigned int n : nodes_)
+    {
+      own_[n].nodes.push_back(nodes[n].dofs[0]);
+      for (const auto &[master, weight] : nodes[n].masters)
+        own_[n].nodes.push_back(nodes[master].dofs[0]);
+      own_[n].outward = normals_[n];
+      own_[n].visible = std::numeric_limits<double>::max();
+    }
+    for (const SurfaceFace &face : faces)
+      for (unsigned int n = 0; n < face.nodes.size(); ++n)
+        if (!own_[face.nodes[n]].nodes.empty())
+        {
+          double      &visible = own_[face.nodes[n]].visible;
+          const double xi = double(n % (degree + 1)) / degree, eta = double(n / (degree + 1)) / degree;
+          visible = std::min(
+              visible, OwnNode::visible_depth * SelfContact::thickness(face, nodes, x_, x_[face.nodes[n]], xi, eta));
+        }
+  }
+
+  OwnNode Triangles::own_node(const unsigned int node) const
+  {
+    return own_.empty() ? OwnNode() : own_[node];
+  }
+
+  double Triangles::least_visible() const
+  {
+    double least = std::numeric_limits<double>::max();
+    for (const OwnNode &own : own_)
+      if (!own.nodes.empty())
+        least = std::min(least, own.visible);
+    return least;
+  }
+
+  bool Triangles::is_at(const Triangle &triangle, const OwnNode &own) const
+  {
+    for (const unsigned int n : triangle.face->nodes)
+      for (const DoFIndex node : own.nodes)
+        if (std::count(own_[n].nodes.begin(), own_[n].nodes.end(), node) > 0)
+          return true;
+    return false;
   }
 
   Triangles::~Triangles()                     = default;
@@ -240,23 +291,54 @@ namespace Nodus
     return result;
   }
 
-  Height Triangles::height(const Point &p, const double reach) const
+  bool Triangles::counts(const Triangle &triangle, const Height &height, const OwnNode &own) const
+  {
+    if (height.normal * own.outward > SelfContact::averted_cosine || is_at(triangle, own))
+      return false;
+    if (own.least > 0.)
+      return height.behind && height.distance > own.least;
+    double visible = own.visible;
+    for (const unsigned int n : triangle.nodes)
+      visible = std::min(visible, own_[n].visible);
+    return !height.behind || height.distance <= visible;
+  }
+
+  Height Triangles::height(const Point &p, const double reach, const OwnNode &own) const
   {
     namespace bgi = boost::geometry::index;
     Height nearest;
     nearest.distance = reach;
-    for (auto leaf = tree_->leaves.qbegin(bgi::nearest(p, triangles_.size() + 1)); leaf != tree_->leaves.qend(); ++leaf)
+    const auto take  = [&](const Leaf &leaf)
     {
-      if (squared_distance(leaf->first, p) > nearest.distance * nearest.distance)
-        break; // boxes come in ascending distance
-      if (const Height here = height(triangles_[leaf->second], p); here.distance < nearest.distance)
+      const Triangle &triangle = triangles_[leaf.second];
+      const Height    here     = height(triangle, p);
+      if (here.distance < nearest.distance && (own.nodes.empty() || counts(triangle, here, own)))
         nearest = here;
+    };
+    if (own.nodes.empty())
+    {
+      for (auto leaf = tree_->leaves.qbegin(bgi::nearest(p, triangles_.size() + 1)); leaf != tree_->leaves.qend();
+           ++leaf)
+      {
+        if (squared_distance(leaf->first, p) > nearest.distance * nearest.distance)
+          break; // boxes come in ascending distance
+        take(*leaf);
+      }
+    }
+    else // most of those nearby do not count
+    {
+      Box around({p, p});
+      around.extend(reach);
+      for (auto leaf = tree_->leaves.qbegin(bgi::intersects(around)); leaf != tree_->leaves.qend(); ++leaf)
+        if (squared_distance(leaf->first, p) <= nearest.distance * nearest.distance)
+          take(*leaf);
     }
     return nearest.distance < reach ? nearest : Height();
   }
 
-  std::vector<std::vector<Crossing>> Triangles::crossings(const std::vector<Way>   &ways,
-                                                          const std::vector<Point> &before) const
+  std::vector<std::vector<Crossing>> Triangles::crossings(const std::vector<Way>     &ways,
+                                                          const std::vector<Point>   &before,
+                                                          const std::vector<OwnNode> &own) const
   {
     namespace bgi = boost::geometry::index;
     std::vector<std::vector<Crossing>> result(ways.size());
@@ -276,6 +358,8 @@ namespace Nodus
       {
         const auto &n   = triangles_[leaf->second].nodes;
         const auto  way = [&](const unsigned int v) { return Way{{before[n[v]], x_[n[v]]}}; };
+        if (!own[w].nodes.empty() && is_at(triangles_[leaf->second], own[w]))
+          continue;
         for (const Crossing &crossing : find_crossings(ways[w], way(0), way(1), way(2)))
           result[w].push_back(crossing);
       }

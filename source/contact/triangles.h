@@ -21,6 +21,25 @@ namespace Nodus
     Vector3 normal;                                             ///< outward there, unit
   };
 
+  /// What a node of the surface itself is, which asks about the rest of it: faces at the node, those that do not
+  /// look at it and those that are too far behind it do not count (eq. O1).
+  struct OwnNode
+  {
+    std::vector<DoFIndex> nodes;   ///< first degrees of freedom of it and of those that it follows; empty: no such
+    Vector3               outward; ///< unit
+    /// Depth up to which faces that have come in count [length]; where @p least is given it looks for the wall behind
+    /// itself instead, for faces that are farther behind it than that.
+    double visible = 0., least = 0.;
+    /// What is visible of the wall behind a face.
+    static constexpr double visible_depth = 0.5;
+
+    template <typename Archive>
+    void serialize(Archive &archive, const unsigned int)
+    {
+      archive &nodes &outward &visible &least;
+    }
+  };
+
   /// Of a point from a box, 0 inside.
   double squared_distance(const dealii::BoundingBox<dim> &box, const Point &p);
 
@@ -42,17 +61,20 @@ namespace Nodus
   /// In ascending order of their times, three at most (eq. V1).
   std::vector<Crossing> find_crossings(const Way &p, const Way &a, const Way &b, const Way &c);
 
+  struct SurfaceNode;
+
   /// Faces of a surface as triangles between their nodes, two for each face or for each quarter of one of degree 2:
   /// plain geometry that can judge what pairing, smoothing and averages make of the same faces.
   class Triangles
   {
   public:
-    /// Of the faces of rank @p rank; those of others beside them tell where the rim is. @p x: positions of the nodes,
-    /// which outlive it.
+    /// Of the faces of rank @p rank; those of others beside them tell where the rim is. @p x: positions of the nodes;
+    /// both outlive it. @p nodes: where nodes of the surface itself may ask (OwnNode), or nullptr.
     Triangles(const std::vector<SurfaceFace> &faces,
               unsigned int                    rank,
               unsigned int                    degree,
-              const std::vector<Point>       &x);
+              const std::vector<Point>       &x,
+              const std::vector<SurfaceNode> *nodes = nullptr);
     ~Triangles();
     Triangles(Triangles &&) noexcept;
 
@@ -71,26 +93,37 @@ namespace Nodus
       return normals_[node];
     }
 
+    /// A node as one that asks about the surface that it is on.
+    OwnNode own_node(unsigned int node) const;
+    /// The least that OwnNode::visible is on this rank; infinite without nodes.
+    double least_visible() const;
+
     /// Where @p p is; the distance is infinite where that is farther than @p reach.
-    Height height(const Point &p, double reach) const;
+    Height height(const Point &p, double reach, const OwnNode &own) const;
     /// Crossings of every way with the triangles, which come from @p before; in no order, and twice where a way goes
-    /// through an edge.
-    std::vector<std::vector<Crossing>> crossings(const std::vector<Way> &ways, const std::vector<Point> &before) const;
+    /// through an edge. @p own: of each way.
+    std::vector<std::vector<Crossing>>
+    crossings(const std::vector<Way> &ways, const std::vector<Point> &before, const std::vector<OwnNode> &own) const;
 
   private:
     struct Triangle
     {
       std::array<unsigned int, 3> nodes; ///< counter-clockwise from outside
       std::array<bool, 3>         rim;   ///< whether the edge opposite to each is
+      const SurfaceFace          *face;
     };
     struct Tree;
     Height height(const Triangle &triangle, const Point &p) const;
+    void know_nodes(const std::vector<SurfaceFace> &faces, unsigned int degree, const std::vector<SurfaceNode> &nodes);
+    bool is_at(const Triangle &triangle, const OwnNode &own) const;
+    bool counts(const Triangle &triangle, const Height &height, const OwnNode &own) const;
 
     const std::vector<Point> &x_;
     std::vector<Triangle>     triangles_;
     std::vector<unsigned int> nodes_;
     std::vector<Vector3>      normals_; ///< of all nodes, zero where there is no face
     std::vector<char>         on_rim_;  ///< likewise
+    std::vector<OwnNode>      own_;     ///< likewise; empty without nodes
     dealii::BoundingBox<dim>  box_;
     std::unique_ptr<Tree>     tree_;
   };

@@ -374,6 +374,10 @@ namespace Nodus
       parameters.output.results_folder = (std::filesystem::path("results") / path.stem()).string();
 
     resolve_names(parameters, text);
+    for (auto &pair : parameters.contact_pairs)
+      if (pair.self_contact && !pair.has_rigid_master() && pair.master.bodies.empty() && !pair.master.has_ids() &&
+          pair.master.where.empty())
+        pair.master = pair.slave;
     parameters.check(text);
     parameters.initialize_plugins(text);
     for (unsigned int b = 0; b < parameters.bodies.size(); ++b)

@@ -286,6 +286,9 @@ namespace Nodus
         section.require(driven(*side) <= 1,
                         key,
                         "has several rigid bodies that forces drive; give each of them a contact pair of its own");
+      section.require(!pair.self_contact || !some(pair.slave, rigid),
+                      "Slave body",
+                      "has a rigid body, which cannot be slave; give it a contact pair of its own, as master");
       section.require(!some(pair.slave, rigid) || !(pair.has_rigid_master() || some(pair.master, rigid)),
                       "Slave body",
                       "is rigid, as is the master: neither can give way; remove the pair");

@@ -236,9 +236,31 @@ namespace Nodus
                           ", for example 0, 0, 1");
     }
 
+    void check_self_contact(const Section &section, const ContactPairParameters &pair)
+    {
+      const std::string remove = "has no meaning with 'Self contact = true', where the slave faces touch each other; "
+                                 "remove it, or take its faces to those of the slave side";
+      for (const auto &[key, given] : {Given("Master body", pair.master.bodies != pair.slave.bodies),
+                                       Given("Master boundary ids",
+                                             pair.master.boundary_ids != pair.slave.boundary_ids ||
+                                                 pair.master.ids_of_body != pair.slave.ids_of_body),
+                                       Given("Master where", pair.master.where != pair.slave.where),
+                                       Given("Master surface", pair.has_rigid_master())})
+        section.require(!given, key, remove);
+      section.require(pair.contact_law == ContactPairParameters::ContactLaw::unilateral,
+                      "Contact law",
+                      "is " + text_of(pair.contact_law) +
+                          ", which a surface cannot be with itself; remove it, or give the pair a master");
+    }
+
     void check_master(const Section &section, const ContactPairParameters &pair, const unsigned int n_bodies)
     {
       const auto &surface = pair.master_surface;
+      if (pair.self_contact)
+      {
+        check_self_contact(section, pair);
+        return;
+      }
       if (!pair.has_rigid_master())
       {
         check(section, pair.master, "Master ", n_bodies, 1);

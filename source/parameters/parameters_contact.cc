@@ -322,6 +322,11 @@ namespace Nodus
     prm.add_parameter("Name", pair.name, "Name in tables and messages [-]; empty: pair <n>.", Patterns::Anything());
     add_region(prm, "Slave ", pair.slave, " that carries the contact pressures, better the softer or finer one", where);
     add_region(prm, "Master ", pair.master, " that the slave nodes are projected onto", where);
+    prm.add_parameter("Self contact",
+                      pair.self_contact,
+                      "Whether the slave faces touch each other [-], be they of one body or of several; then there is "
+                      "no master. Of two faces that meet that one is slave which moves while the other is held, else "
+                      "the finer one, else that of the body with the lower number.");
     add_master_surface(prm, pair.master_surface);
     add_scheme(prm, pair);
     add_contact_laws(prm, pair);

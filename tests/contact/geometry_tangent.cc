@@ -2,8 +2,8 @@
 // pairing renewed at every step, on bumpy surfaces that do not match: nodal forces kept (multipliers follow the areas),
 // friction multipliers turned with the frames, all as the solver does; also on rigid masters. Frictionless, sticking,
 // slipping and tied; slave faces that stick out of the master, and that see a part of it that is steep; bodies that
-// have turned by 70 degrees in the increment. Exact but for how smoothing shifts points along averaged surfaces, and
-// for the areas of the nodal scheme with friction (geometry_tangent.h).
+// have turned by 70 degrees in the increment; one surface that comes near to itself. Exact but for how smoothing shifts
+// points along averaged surfaces, and for the areas of the nodal scheme with friction (geometry_tangent.h).
 
 #include "contact/geometry_tangent.h"
 #include "contact/site_values.h"
@@ -49,6 +49,7 @@ namespace
     bool              orthotropic = false;
     bool              gives_way   = false; ///< a pressure-gap law and elastic slip
     double            bend        = 0.;    ///< of the master, down along x = 0.2, in degrees
+    double            apart       = 0.;    ///< distance of surfaces that are one, which is near enough for a part
   };
 
   /// A fixture whose multipliers keep what the solver keeps when it pairs again.
@@ -166,6 +167,15 @@ namespace
     p.surface     = kind.surface;
     p.normal      = kind.normal;
     p.integration = kind.integration;
+    if (kind.apart > 0.)
+    {
+      p.slave             = region(1, {});
+      p.slave.bodies      = {1, 2};
+      p.slave.ids_of_body = {{1, {z_plus}}, {2, {z_minus}}};
+      p.master            = p.slave;
+      p.self_contact      = true;
+      p.search_distance   = 4. / 3. * kind.apart;
+    }
     if (kind.friction == Friction::tied)
       p.contact_law = Pair::ContactLaw::tied;
     else if (kind.friction != Friction::none)
@@ -235,7 +245,8 @@ namespace
     for (auto &x : state.x)
       x += Vector3(
           {size * random(generator), size * random(generator), 0.1 * x[0] * x[1] + 0.5 * size * random(generator)});
-    for (unsigned int iteration = 0; iteration < 20 && kind.bend == 0.; ++iteration) // slave nodes onto the master
+    for (unsigned int iteration = 0; iteration < 20 && kind.bend == 0. && kind.apart == 0.;
+         ++iteration) // slave nodes onto the master
     {
       Kept::follow(fixture);
       fixture.pair_at(state.x);
@@ -266,8 +277,9 @@ namespace
   void measure(const Kind &kind)
   {
     const double                upper = kind.overhang > 0. ? 0.3 + 0.4 * kind.overhang : 0.13;
-    std::vector<BodyParameters> bodies{box("lower", "4,4,1", {-0.1, -0.1, 0}, {1.1, 1.1, 1}, 1, 0),
-                                       box("upper", "2,2,1", {upper, 0.07, 1}, {upper + 0.8, 0.87, 2}, 1, 0)};
+    std::vector<BodyParameters> bodies{
+        box("lower", "4,4,1", {-0.1, -0.1, 0}, {1.1, 1.1, 1}, 1, 0),
+        box("upper", "2,2,1", {upper, 0.07, 1 + kind.apart}, {upper + 0.8, 0.87, 2}, 1, 0)};
     if (kind.hanging)
     {
       bodies[0].refine_where = "x+y<1";
@@ -417,6 +429,7 @@ namespace
               k.overhang = overhang;
               k.friction = Friction::stick;
             });
+      add(base, ", one surface", [](Kind &k) { k.apart = 0.3; });
       // a row of points that fades out (eq. J7)
       add(base,
           ", by face, overhang, stick",

@@ -217,7 +217,8 @@ namespace Nodus
     };
     std::string           name;
     RegionParameters      slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
-    RegionParameters      master; ///< keys "Master body", ...
+    RegionParameters      master; ///< keys "Master body", ...; that of the slave where the surface touches itself
+    bool                  self_contact                = false;
     ContactLaw            contact_law                 = ContactLaw::unilateral;
     FrictionLaw           friction_law                = FrictionLaw::coulomb;
     double                friction_coefficient        = 0.;
