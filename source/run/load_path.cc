@@ -169,16 +169,15 @@ namespace Nodus
                           SolverFailure::Kind::judged);
   }
 
-  /// Where iterates are not stable: once after a few halvings, and again when no smaller increment is left. Where
-  /// Newton's method finds nothing then, for there may be no equilibrium nearby: friction lets go.
+  /// When no smaller increment is left, for there may be no equilibrium nearby: friction lets go, a column that leans
+  /// on a wall turns about where it does. Where iterates are not stable, once before, after a few halvings.
   bool LoadPath::may_relax(const SolverFailure::Kind failure) const
   {
     using Kind        = SolverFailure::Kind;
     const bool newton = failure == Kind::newton_stalled || failure == Kind::newton_limit;
     const bool loop   = failure == Kind::status_cycle || failure == Kind::geometry_cycle || failure == Kind::loop_limit;
     const bool last = !parts_.path.may_cut_back(), early = !relaxed_ && cut_backs_ >= patient_halvings;
-    return !relaxing_ && parts_.strategy.may_relax() &&
-           (unstable_ ? (newton || loop) && (last || early) : newton && last);
+    return !relaxing_ && parts_.strategy.may_relax() && (newton || loop) && (last || (unstable_ && early));
   }
 
   /// Nothing is committed that does not hold where it is measured anew. @throws SolverFailure
