@@ -88,6 +88,7 @@ namespace
       dof_handler.distribute_dofs(fe);
       relevant = dealii::DoFTools::extract_locally_relevant_dofs(dof_handler);
       u.reinit(dof_handler.locally_owned_dofs(), relevant, communicator);
+      u.update_ghost_values();
       points = support_points(mapping, dof_handler);
     }
 

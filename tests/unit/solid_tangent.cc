@@ -231,8 +231,7 @@ namespace
     FullMatrix<double> result(model.dof_handler.n_dofs(), model.dof_handler.n_dofs());
     Vector             base(model.dof_handler.locally_owned_dofs(), communicator);
     base = model.u;
-    // or the first addition to a copy would do it, on one rank only
-    base.compress(dealii::VectorOperation::insert);
+    base.zero_out_ghost_values(); // or nothing could be added to a copy
     for (DoFIndex column = 0; column < model.dof_handler.n_dofs(); ++column)
       for (const double sign : {1., -1.})
       {
