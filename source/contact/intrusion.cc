@@ -185,7 +185,7 @@ namespace Nodus
       }
 
     private:
-      /// Behind its own surface nothing is seen beyond the middle of its cells. Collective.
+      /// Behind its own surface nothing is seen beyond the middle of the thinnest wall. Collective.
       void see_half_through(const Triangles &surface)
       {
         if (self_)
