@@ -241,8 +241,8 @@ namespace Nodus
     for (unsigned int k = 1; k < sites_.n_owned_nodes; ++k)
       for (unsigned int l = k; l-- > 0 && sites_.nodes[l].node == sites_.nodes[k].node;)
       {
-        const bool self =
-            pairs_[sites_.nodes[k].pair].self_contact || pairs_[sites_.nodes[l].pair].self_contact; // never at one place
+        const bool self = pairs_[sites_.nodes[k].pair].self_contact ||
+                          pairs_[sites_.nodes[l].pair].self_contact; // never at one place
         const bool smooth = !self && normal[k] * normal[l] > smooth_seam_cosine * normal[k].norm() * normal[l].norm();
         if (!smooth && !rubs_in_points(k) && !rubs_in_points(l))
           continue;
