@@ -79,6 +79,9 @@ namespace Nodus
   void MeshAdaptation::take_state_along()
   {
     auto &triangulation = *model_.bodies.refinable();
+    // Nodal forces belong to the mesh: they are no field.
+    states_.committed.reaction = 0.; // nothing is being released, and what may be is found anew
+    states_.committed.applied  = 0.;
     // hanging nodes have no state of their own, but their cells are interpolated
     std::vector<Vector> state_before   = interpolable_vectors(states_.committed, *model_.contact);
     const auto          hanging_before = hanging_constraints(model_.dof_handler);
@@ -86,7 +89,9 @@ namespace Nodus
       hanging_before.distribute(state_before[n]);
     std::vector<Vector>         ghosted;
     std::vector<const Vector *> pointers;
-    SolutionTransfer            transfer(model_.dof_handler);
+    // The mean of what its cells find at a node: where terms cancel, they differ by more than deal.II's debug mode
+    // bears.
+    SolutionTransfer transfer(model_.dof_handler, /* average_values = */ true);
     ghosted.reserve(state_before.size()); // a copy would not have the ghosts
     for (const Vector &v : state_before)
       ghosted.push_back(model_.with_ghosts(v));
@@ -119,8 +124,7 @@ namespace Nodus
     states_.now.history = model_.solid->start();
     take_interpolated(after, *model_.contact, states_.now);
     model_.rigid_bodies.move(states_.now.unknowns.block(0)); // also where new nodes lie on curved surfaces
-    states_.now.reaction = 0.;                               // nothing is being released, and what may be is found anew
-    states_.committed    = states_.now;
+    states_.committed = states_.now;
     model_.roll_back(states_);
   }
 
