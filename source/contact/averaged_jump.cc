@@ -18,6 +18,9 @@ namespace Nodus
     /// of a quadratic face keep positive integrals down to here.
     constexpr double dual_coverage = 0.75;
     constexpr double dual_growth   = 1. / (1. - dual_coverage - 1e-8);
+    /// A node with this part of its surface covered, or more, has a constraint of its own. Where a corner of the master
+    /// lies at a node it is a quarter.
+    constexpr double well_covered = 0.2;
     /// Less of the node's surface than this has no partner worth a constraint.
     constexpr double smallest_coverage = 2e-2;
     /// Entries of the slave part below this are round-off of the biorthogonality.
@@ -68,11 +71,11 @@ namespace Nodus
     }
 
     /// A hanging node is where those are that it follows, but for its reference position.
-    void add(const ContactSurfaces            &surfaces,
-             std::vector<AveragedJump::Entry> &entries,
-             const unsigned int                node,
-             const double                      weight,
-             Vector3                          &offset)
+    void add_entry(const ContactSurfaces            &surfaces,
+                   std::vector<AveragedJump::Entry> &entries,
+                   const unsigned int                node,
+                   const double                      weight,
+                   Vector3                          &offset)
     {
       surfaces.expand(node,
                       weight,
@@ -113,32 +116,13 @@ namespace Nodus
       return mine;
     }
 
-    /// Adds a face to the rows of its slave nodes that are here.
-    void add(const ContactSurfaces &surfaces, const FaceRows &face, std::vector<AveragedJump::Row> &rows)
+    /// Slave nodes of a face.
+    std::vector<unsigned int> slaves_of(const ContactSurfaces &surfaces, const FaceRows &face)
     {
-      const unsigned int n         = (surfaces.degree() + 1) * (surfaces.degree() + 1);
-      const unsigned int n_columns = face.nodes.size() + 2;
-      for (unsigned int a = 0; a < face.slaves.size(); ++a)
-      {
-        const unsigned int k = surfaces.slave_number(face.pair, surfaces.node(face.slaves[a]));
-        if (!surfaces.is_owned(k))
-          continue;
-        AveragedJump::Row  &row = rows[k];
-        const double *const w   = face.weights.data() + a * n_columns;
-        for (unsigned int b = 0; b < face.nodes.size(); ++b)
-          if (w[b] != 0.)
-            add(surfaces, b < n ? row.slave : row.master, surfaces.node(face.nodes[b]), w[b], row.offset);
-        row.area += w[n_columns - 2];
-        row.whole += w[n_columns - 1];
-        for (unsigned int c = 0; c < dim; ++c)
-        {
-          const double *const v = face.vectors.data() + FaceRows::n_vectors * a + c;
-          row.offset[c] += v[0];
-          row.normal[c] += v[dim];
-          row.rigid.x[c] += v[2 * dim];
-          row.rigid.moved[c] += v[3 * dim];
-        }
-      }
+      std::vector<unsigned int> slaves;
+      for (const DoFIndex dof : face.slaves)
+        slaves.push_back(surfaces.slave_number(face.pair, surfaces.node(dof)));
+      return slaves;
     }
 
     /// Sums over faces become means; a node with next to no partner loses its row.
@@ -203,6 +187,82 @@ namespace Nodus
       face.coverage = {face_points(geometry, p, f, rule, face.points)};
   }
 
+  /// Decides which nodes share out their parts. Collective.
+  void AveragedJump::share_out(const ContactSurfaces &surfaces, const std::vector<FaceRows> &faces)
+  {
+    std::vector<std::array<double, 2>> areas(rows_.size(), {{0., 0.}}); // covered, whole
+    const auto                         for_each_area = [&](const auto &f)
+    {
+      for (const FaceRows &face : faces)
+      {
+        const std::vector<unsigned int> slaves    = slaves_of(surfaces, face);
+        const unsigned int              n_columns = face.nodes.size() + 2;
+        for (unsigned int a = 0; a < slaves.size(); ++a)
+          if (surfaces.is_owned(slaves[a]))
+            f(slaves, slaves[a], face.weights.data() + (a + 1) * n_columns - 2);
+      }
+    };
+    for_each_area(
+        [&](const std::vector<unsigned int> &, const unsigned int k, const double *const area)
+        {
+          for (unsigned int i = 0; i < 2; ++i)
+            areas[k][i] += area[i];
+        });
+    for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
+      cover_[k] = areas[k][0] >= well_covered * areas[k][1] ? Cover::well
+                  : areas[k][0] > 0.                        ? Cover::shared_out
+                                                            : Cover::little;
+    surfaces.slave_exchange().update(cover_);
+    std::vector<unsigned int> alone;
+    for_each_area(
+        [&](const std::vector<unsigned int> &slaves, const unsigned int k, const double *const area)
+        {
+          if (area[0] > 0. && std::none_of(slaves.begin(),
+                                           slaves.end(),
+                                           [&](const unsigned int j) { return cover_[j] == Cover::well; }))
+            alone.push_back(k);
+        });
+    for (const unsigned int k : alone)
+      cover_[k] = Cover::little;
+    surfaces.slave_exchange().update(cover_);
+  }
+
+  /// Adds what a face has to the rows of its slave nodes that are here.
+  void AveragedJump::add(const ContactSurfaces &surfaces, const FaceRows &face)
+  {
+    const std::vector<unsigned int> slaves    = slaves_of(surfaces, face);
+    const unsigned int              n         = (surfaces.degree() + 1) * (surfaces.degree() + 1);
+    const unsigned int              n_columns = face.nodes.size() + 2;
+    for (const unsigned int k : slaves)
+    {
+      if (!surfaces.is_owned(k) || shared_out(k))
+        continue;
+      Row &row = rows_[k];
+      for_each_part(
+          slaves,
+          k,
+          [&](const unsigned int a, const double part)
+          {
+            const double *const w = face.weights.data() + a * n_columns;
+            for (unsigned int b = 0; b < face.nodes.size(); ++b)
+              if (w[b] != 0.)
+                add_entry(
+                    surfaces, b < n ? row.slave : row.master, surfaces.node(face.nodes[b]), part * w[b], row.offset);
+            row.area += part * w[n_columns - 2];
+            if (slaves[a] == k)
+              row.whole += w[n_columns - 1];
+            for (unsigned int c = 0; c < dim; ++c)
+            {
+              const double *const v = face.vectors.data() + FaceRows::n_vectors * a + c;
+              row.offset[c] += part * v[0];
+              row.normal[c] += part * v[dim];
+              row.rigid.x[c] += part * v[2 * dim];
+              row.rigid.moved[c] += part * v[3 * dim];
+            }
+          });
+    }
+  }
+
   void AveragedJump::compute(const std::vector<ContactPairParameters> &pairs,
                              const ContactSurfaces                    &surfaces,
                              const ContactGeometry                    &geometry,
@@ -210,6 +270,7 @@ namespace Nodus
                              const std::vector<Point>                 &X)
   {
     rows_.assign(surfaces.slave_nodes().size(), Row());
+    cover_.assign(rows_.size(), Cover::well);
     const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(surfaces.layout().communicator);
 
     std::vector<FaceRows> mine;
@@ -234,8 +295,10 @@ namespace Nodus
     }
     if (!any)
       return;
-    for (const FaceRows &face : collect(surfaces, faces_, std::move(mine)))
-      add(surfaces, face, rows_);
+    const std::vector<FaceRows> around = collect(surfaces, faces_, std::move(mine));
+    share_out(surfaces, around);
+    for (const FaceRows &face : around)
+      add(surfaces, face);
     for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
       normalise(rows_[k]);
 

@@ -9,6 +9,8 @@
 
 namespace Nodus
 {
+  struct FaceRows;
+
   /// Jumps averaged over the slave faces around each slave node, for the pairs with that scheme (theory section 7):
   /// [[u]]_j = int psi_j [[u]] / int psi_j over the part of the slave surface that has a partner.
   ///
@@ -52,6 +54,16 @@ namespace Nodus
       return rows_[slave];
     }
 
+    /// It has next to no partner, and well covered nodes take what is around it.
+    bool shared_out(const unsigned int slave) const
+    {
+      return cover_[slave] == Cover::shared_out;
+    }
+    /// Calls f(a, part) for the parts of a slave face that are in the row of a slave node: number of the psi among the
+    /// slave nodes @p slaves of the face, and how much of it.
+    template <typename Function>
+    void for_each_part(const std::vector<unsigned int> &slaves, const unsigned int slave, const Function &f) const;
+
     /// A slave face with its integration points. On a rigid master their master face is not set.
     struct Face
     {
@@ -79,9 +91,35 @@ namespace Nodus
     static std::array<double, 9> hats(unsigned int degree, double xi, double eta);
 
   private:
-    std::vector<Face> faces_;
+    /// How much of the surface around a slave node has a partner.
+    enum class Cover : char
+    {
+      little,     ///< or nothing; a face around it has no well covered node: it keeps its constraint
+      shared_out, ///< likewise, to the well covered nodes of all faces around it
+      well
+    };
+    void share_out(const ContactSurfaces &surfaces, const std::vector<FaceRows> &faces);
+    void add(const ContactSurfaces &surfaces, const FaceRows &face);
+
+    std::vector<Face>  faces_;
+    std::vector<Cover> cover_; ///< per slave node, ghosts too
     std::vector<Row> rows_; ///< per slave node; area 0 where not covered or of another scheme; of ghosts the area alone
   };
+
+  template <typename Function>
+  void AveragedJump::for_each_part(const std::vector<unsigned int> &slaves,
+                                   const unsigned int               slave,
+                                   const Function                  &f) const
+  {
+    unsigned int n_well = 0;
+    for (const unsigned int k : slaves)
+      n_well += cover_[k] == Cover::well;
+    for (unsigned int a = 0; a < slaves.size(); ++a)
+      if (slaves[a] == slave)
+        f(a, 1.);
+      else if (cover_[slave] == Cover::well && cover_[slaves[a]] == Cover::shared_out)
+        f(a, 1. / n_well);
+  }
 } // namespace Nodus
 
 #endif

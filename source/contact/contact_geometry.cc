@@ -15,6 +15,8 @@ namespace Nodus
   {
     /// Master faces looking along the slave's outward normal (cosine above this) are the far side of a body.
     constexpr double far_side_cosine = 0.5;
+    /// Faces of a mesh whose normals make this cosine or less have an edge between them (60 degrees).
+    constexpr double edge_cosine = 0.5;
     /// Face sizes that a point on the rim may be beyond it by round-off.
     constexpr double no_tolerance = 1e-12;
   } // namespace
@@ -52,29 +54,39 @@ namespace Nodus
         }
       return std::make_pair(nodes, false);
     };
-    std::map<std::set<unsigned int>, std::array<unsigned int, 2>> count; // faces with the whole edge, with half of it
+    std::vector<Tree::Leaf>                                                    leaves;
+    std::map<std::set<unsigned int>, std::array<std::vector<unsigned int>, 2>> at_edge; // whole, half of it
+    for (unsigned int f = 0; f < master.n_faces(); ++f)
+    {
+      const FaceGeometry centre = master.at(f, 0.5, 0.5);
+      centre_.push_back(centre.x);
+      centre_normal_.push_back(master.normal(f, 0.5, 0.5));
+      size_.push_back(std::sqrt(centre.area_vector().norm()));
+      leaves.emplace_back(face_box(master.face(f), degree, master.positions()), f);
+      for (unsigned int e = 0; e < 4; ++e)
+      {
+        const auto &[nodes, half] = edge(master.face(f), e);
+        at_edge[nodes][half].push_back(f);
+      }
+    }
     for (unsigned int f = 0; f < master.n_faces(); ++f)
       for (unsigned int e = 0; e < 4; ++e)
       {
         const auto &[nodes, half] = edge(master.face(f), e);
-        ++count[nodes][half];
+        const auto &faces         = at_edge[nodes];
+        const auto  goes_on       = [&](const std::vector<unsigned int> &others) {
+          return std::any_of(
+              others.begin(), others.end(), [&](const unsigned int g) { return g != f && !falls_off(f, g); });
+        };
+        on_rim_[f][e] = !goes_on(faces[0]) && (half || !goes_on(faces[1]));
       }
-
-    std::vector<Tree::Leaf> leaves;
-    for (unsigned int f = 0; f < master.n_faces(); ++f)
-    {
-      for (unsigned int e = 0; e < 4; ++e)
-      {
-        const auto &[nodes, half]  = edge(master.face(f), e);
-        const auto &[whole, parts] = count[nodes];
-        on_rim_[f][e]              = half ? whole == 0 : whole + parts == 1;
-      }
-      const double area = master.at(f, 0.5, 0.5).area_vector().norm();
-      centre_normal_.push_back(master.normal(f, 0.5, 0.5));
-      size_.push_back(std::sqrt(area));
-      leaves.emplace_back(face_box(master.face(f), degree, master.positions()), f);
-    }
     tree_->leaves = dealii::pack_rtree(leaves);
+  }
+
+  bool MasterSearch::falls_off(const unsigned int f, const unsigned int neighbour) const
+  {
+    return centre_normal_[f] * centre_normal_[neighbour] <= edge_cosine &&
+           (centre_[neighbour] - centre_[f]) * centre_normal_[f] < 0.;
   }
 
   MasterSearch::~MasterSearch()                        = default;
@@ -110,7 +122,7 @@ namespace Nodus
       if (squared_distance(leaf->first, p) > best.distance)
         break; // boxes come in ascending distance
       Projection at{leaf->second};
-      if (centre_normal_[at.face] * slave_normal > far_side_cosine)
+      if (centre_normal_[at.face] * slave_normal > SelfContact::averted_cosine)
         continue;
       const double d2 = closest_point(master_, at.face, p, at.xi, at.eta);
       best.take(at, d2, size_[at.face]);

@@ -56,6 +56,9 @@ namespace Nodus
     void candidates(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &faces) const;
 
   private:
+    /// Whether there is an edge between two faces, beyond which the neighbour leads down: what slides over it leaves
+    /// the face as at a rim.
+    bool       falls_off(unsigned int f, unsigned int neighbour) const;
     Projection within_rim(const Projection &closest, const Point &p, double part) const;
 
     struct Tree;
@@ -63,6 +66,7 @@ namespace Nodus
     const double                      tolerance_; ///< of the overhang [faces]
     std::unique_ptr<Tree>             tree_;
     std::vector<SurfaceGeometry::Rim> on_rim_;
+    std::vector<Point>                centre_;
     std::vector<Vector3>              centre_normal_; ///< outward
     std::vector<double>               size_;
   };

@@ -157,6 +157,11 @@ namespace Nodus
     {
       return pairing_;
     }
+    /// The surface around the site is covered too little for a constraint of its own: its neighbours have it (eq. J9).
+    bool is_shared_out(const unsigned int site) const
+    {
+      return !surfaces_.is_point(site) && averaged_.shared_out(site);
+    }
     const JumpOperator &jump() const
     {
       return jump_;

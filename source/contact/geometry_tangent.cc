@@ -83,13 +83,13 @@ namespace Nodus
       variation.column(d.node);
     if (averages(site))
     {
-      faces.for_each(site, [&](const FaceVariation &face, const unsigned int) { variation.number(surfaces_, face); });
+      faces.for_each(site, [&](const FaceVariation &face, unsigned int, double) { variation.number(surfaces_, face); });
       variation.allocate();
       faces.for_each(site,
-                     [&](const FaceVariation &face, const unsigned int a)
+                     [&](const FaceVariation &face, const unsigned int a, const double part)
                      {
-                       variation.add_face(surfaces_, face, a);
-                       add_parts(site, face, a, couplings);
+                       variation.add_face(surfaces_, face, a, part);
+                       add_parts(site, face, a, part, couplings);
                      });
       variation.take_means(averaged_.row(site));
       faces.done(site);
@@ -120,11 +120,13 @@ namespace Nodus
   void GeometryTangent::add_parts(const unsigned int   site,
                                   const FaceVariation &face,
                                   const unsigned int   a,
+                                  const double         part,
                                   GeometryCouplings   &couplings) const
   {
     Matrix gap(1, 3 * face.parts().size());
     for (unsigned int i = 0; i < face.parts().size(); ++i)
-      gap.middleCols<3>(3 * i) = face.part_weight(a, i) / averaged_.row(site).area * eigen(pairing_[site].normal);
+      gap.middleCols<3>(3 * i) =
+          part * face.part_weight(a, i) / averaged_.row(site).area * eigen(pairing_[site].normal);
     for (const auto &[k, coefficient] : gap_rows_[site])
       couplings.add_gap(k, face.parts(), coefficient * gap);
   }

@@ -88,7 +88,8 @@ namespace Nodus
                   GeometryCouplings     &couplings) const;
     Matrix lever_variation(unsigned int site, const ContactState &state, const SiteVariation &variation) const;
     /// Adds how gaps follow the parts of the offsets of smoothed faces (eq. G9).
-    void add_parts(unsigned int site, const FaceVariation &face, unsigned int a, GeometryCouplings &couplings) const;
+    void add_parts(
+        unsigned int site, const FaceVariation &face, unsigned int a, double part, GeometryCouplings &couplings) const;
     /// Variation of the gap without that at fixed geometry (eq. G13). It needs the variation of the row before the
     /// balance of moments, which leaves gaps alone.
     Eigen::RowVectorXd

@@ -68,14 +68,17 @@ namespace Nodus
     weight_.assign(nodes_.size(), 0.);
   }
 
-  void SiteVariation::add_face(const ContactSurfaces &surfaces, const FaceVariation &face, const unsigned int a)
+  void SiteVariation::add_face(const ContactSurfaces &surfaces,
+                               const FaceVariation   &face,
+                               const unsigned int     a,
+                               const double           part)
   {
     const auto add = [&](const Eigen::Index row, const unsigned int of_face, const double factor)
     {
       const double *value = face.row(a, of_face);
       for (const unsigned int node : face.nodes())
         for (unsigned int c = 0, at = 3 * place_of_source_[node]; c < dim; ++c)
-          rows_(row, at + c) += factor * *value++;
+          rows_(row, at + c) += part * factor * *value++;
     };
     for (unsigned int b = 0; b < face.nodes().size(); ++b)
     {
@@ -84,8 +87,8 @@ namespace Nodus
         continue;
       surfaces.expand(n,
                       1.,
-                      [&](const unsigned int free_node, const double part)
-                      { add(place_of_node_[free_node], of_face, part); });
+                      [&](const unsigned int free_node, const double share)
+                      { add(place_of_node_[free_node], of_face, share); });
       for (unsigned int c = 0; c < dim; ++c) // of hanging nodes
         if (surfaces.nodes()[n].offset[c] != 0.)
           add(offset() + c, of_face, surfaces.nodes()[n].offset[c]);

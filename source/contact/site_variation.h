@@ -80,8 +80,8 @@ namespace Nodus
         add(row + i, column, value[i]);
     }
 
-    /// Adds the integrals in the row of slave node @p a of a face, ...
-    void add_face(const ContactSurfaces &surfaces, const FaceVariation &face, unsigned int a);
+    /// Adds a part of the integrals in the row of slave node @p a of a face, ...
+    void add_face(const ContactSurfaces &surfaces, const FaceVariation &face, unsigned int a, double part);
     /// ... which become means: the variation of @p row from the variation of what it was before the division.
     void take_means(const AveragedJump::Row &row);
     /// Replaces the variation of the weights by that after the change that balances moments (eq. G28-G30). @p master:

@@ -3,6 +3,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
+
 namespace Nodus
 {
   VariedFaces::VariedFaces(const std::vector<ContactPairParameters> &pairs,
@@ -14,6 +16,7 @@ namespace Nodus
       : pairs_(pairs)
       , surfaces_(surfaces)
       , geometry_(geometry)
+      , averaged_(averaged)
       , sources_(sources)
       , X_(surfaces.positions(std::vector<Vector3>(surfaces.nodes().size())))
       , of_site_(surfaces.n_owned_slave_nodes())

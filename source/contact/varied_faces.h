@@ -3,7 +3,6 @@
 
 #include "contact/face_variation.h"
 
-#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -22,7 +21,8 @@ namespace Nodus
                 const VariationSources                   &sources,
                 const std::vector<char>                  &active);
 
-    /// Calls f(variation, number of the site among the slave nodes of the face) for the faces around a site.
+    /// Calls f(variation, number of a slave node of the face, part of it) for what the faces around a site add to its
+    /// row.
     template <typename Function>
     void for_each(const unsigned int site, const Function &f)
     {
@@ -30,7 +30,7 @@ namespace Nodus
       {
         const FaceVariation &varied = variation(faces_[i]);
         const auto          &slaves = surfaces_.slave_faces(faces_[i].face->pair)[faces_[i].face->face].slaves;
-        f(varied, std::find(slaves.begin(), slaves.end(), site) - slaves.begin());
+        averaged_.for_each_part(slaves, site, [&](const unsigned int a, const double part) { f(varied, a, part); });
       }
     }
     /// An active site will not ask again.
@@ -52,6 +52,7 @@ namespace Nodus
     const std::vector<ContactPairParameters>        &pairs_;
     const ContactSurfaces                           &surfaces_;
     const ContactGeometry                           &geometry_;
+    const AveragedJump                              &averaged_;
     const VariationSources                          &sources_;
     std::vector<Point>                               X_; ///< reference positions
     std::vector<std::vector<unsigned int>>           of_site_;

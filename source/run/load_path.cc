@@ -314,7 +314,7 @@ namespace Nodus
       if (surfaces.is_owned(s) && surfaces.has_status(s) && closed[s])
       {
         ++n_closed;
-        if (!contact.pairing()[s].found)
+        if (!contact.pairing()[s].found && !contact.is_shared_out(s))
           lost.push_back(s);
       }
     const MPI_Comm     communicator = parts_.model.communicator;

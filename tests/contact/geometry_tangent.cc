@@ -421,7 +421,7 @@ namespace
             k.hanging  = true;
             k.friction = Friction::stick;
           });
-      for (const double overhang : {0.0125, 0.125, 0.6}) // dual functions, these with hats, hats
+      for (const double overhang : {0.0125, 0.125, 0.3, 0.6}) // dual functions, these with hats, hats, shared out
         add(base,
             ", overhang " + std::to_string(overhang) + ", stick",
             [overhang](Kind &k)

@@ -100,8 +100,9 @@ namespace
            Numbers::error_below((fixture.pairing[0].normal - normal_before).norm(), 1e-4, 2));
   }
 
-  /// A face that moves over the rim of the master by steps of 1e-4 faces. Points fade out over 0.025 faces, so that a
-  /// row may change by some 40 times as much; a column of points that goes at once would change it by a tenth.
+  /// A face that moves over the rim of the master by steps of 1e-4 faces, until a node has no row any more (eq. J9).
+  /// Points fade out over 0.025 faces, so that a row may change by some 40 times as much; a column of points that goes
+  /// at once would change it by a tenth.
   void leave(const std::string &name, const unsigned int degree)
   {
     const std::vector<BodyParameters> bodies{box("lower", "2,2,1", {-1, -1, -1}, {1, 1, 0}, 1, 0),
@@ -124,6 +125,8 @@ namespace
         if (is_slave[i])
           x[i] = start[i] + Vector3({-0.45 - 1e-4 * step, 0., 0.01});
       fixture.pair_at(x);
+      if (!fixture.averaged.covered(0))
+        break;
       auto after = row(fixture, 0);
       after[-1u] = {{fixture.averaged.row(0).area / whole, 0., 0., 0.}};
       least      = std::min(least, after[-1u][0]);
