@@ -16,7 +16,8 @@ namespace Nodus
     for (unsigned int b = 0; b < model_.rigid_bodies.size(); ++b) // what drives these counts as force and moment
       for (const RigidBodies::Node &node : model_.rigid_bodies.nodes(b))
         for (unsigned int c = 0; c < dim; ++c)
-          applied(node.dof + c) = forces_.external(node.dof + c) - forces_.drag(node.dof + c);
+          if (model_.rigid_bodies.moves(b, c))
+            applied(node.dof + c) = forces_.external(node.dof + c) - forces_.drag(node.dof + c);
     applied.compress(dealii::VectorOperation::insert);
     return applied;
   }
