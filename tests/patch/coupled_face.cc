@@ -2,7 +2,8 @@
 // at one end, is a bar and Euler-Bernoulli's beam without shear: it elongates by F L/(E A), its end turns by M L/(E I)
 // and moves aside by half of that times L, quadratic elements having exactly these displacements, with hanging nodes,
 // too. A bar whose ends may warp turns by T L/(G J) with J = 0.140577 a^4 (Timoshenko & Goodier, Theory of Elasticity,
-// section 109). A strip of unit width that a moment bends by theta at large rotations is an arc of the length L.
+// section 109). A strip of unit width that a moment bends by theta at large rotations is an arc of the length L. A
+// contact has the force and the moment of a face that presses it.
 
 #include "../cases.h"
 
@@ -88,6 +89,39 @@ namespace
     compare("  moment", tip.moment, numbers(moment), load);
   }
 
+  /// Pressed on another one and tilted, with friction.
+  void pressed_block()
+  {
+    Parameters p = bar("pressed", "1,1,1", 0.);
+    p.bodies     = {box("upper", "2,2,2", {0, 0, 1}, {1, 1, 2}, 1000., 0.3),
+                    box("lower", "3,3,2", {-0.1, -0.1, 0}, {1.1, 1.1, 1}, 1000., 0.3)};
+    for (BodyParameters &body : p.bodies)
+      body.material.law = MaterialParameters::Law::neo_hookean;
+    p.degree              = 1;
+    p.load_stepping       = {{1.}, {2}};
+    p.boundary_conditions = {
+        hold("ground", region(2, {z_minus}), {0, 1, 2}),
+        couple(region(1, {z_plus}), {0, 1, 2}, {2, 3, 4}, {"0", "0", "-100*t"}, {"6*t", "0", "0"})};
+    p.boundary_conditions[1].motion.rotation_centre = {0.5, 0.5, 2};
+    p.boundary_conditions[1].motion.translation     = {"0.01*t", "0", "0"};
+    p.contact_pairs                                 = {pair(region(1, {z_minus}), region(2, {z_plus}), 0.2)};
+    p.contact_pairs[0].scheme                       = ContactPairParameters::Scheme::averaged;
+    p.contact_pairs[0].normal                       = ContactPairParameters::Normal::averaged;
+    ContactProblem problem(p, world(), log());
+    problem.run();
+    const RigidBodyMotion   &top     = problem.rigid_bodies().front();
+    const ContactResultants &contact = problem.contact_resultants().front();
+    const Vector3            centre  = Vector3({0.5, 0.5, 2}) + top.translation;
+    check("pressed block: force", -top.force[2], 100., 1e-6);
+    check("  moment", top.moment[0], 6., 1e-6);
+    check("  the contact balances: force", (contact.slave_force + top.force).norm() / top.force.norm(), 0., 1e-6, 1.);
+    check("  moment",
+          (contact.slave_moment + top.moment + dealii::cross_product_3d(centre, top.force)).norm() / top.force.norm(),
+          0.,
+          1e-6,
+          1.);
+  }
+
   struct Strip
   {
     RigidBodyMotion tip;
@@ -165,6 +199,7 @@ int main(int argc, char **argv)
     check("force at a node: reaction", problem.reactions()[0].second, Vector3({-1e-4, -2e-4, 3e-4}), 1e-6);
     check("  displacement", problem.displacement(1, {0.5, 0.5, L}), node.translation, 1e-6);
   }
+  pressed_block();
   const Strip direct = strip("strip", [](Parameters &) {});
   check("  stored energy",
         last_energy("coupled_face_strip", "stored") / direct.moment,
