@@ -49,6 +49,12 @@ namespace Nodus
 
   std::string Equilibrium::ways_to_hold(const std::string &first) const
   {
-    return Nodus::ways_to_hold(model_, states_.now, increment_, first);
+    // what resists a coupled face may be slender, and its stiffness less than an iterative solver tells from none
+    const bool untold = model_.rigid_bodies.has_faces() && solver_->type() != LinearSolverParameters::Type::direct;
+    return Nodus::ways_to_hold(model_,
+                               states_.now,
+                               increment_,
+                               first +
+                                   (untold ? ", set 'Linear solver/Type = direct' if a slender part resists it" : ""));
   }
 } // namespace Nodus
