@@ -221,4 +221,14 @@ int main(int argc, char **argv)
     check(name + ": the same rotation", (tip.rotation - direct.tip.rotation).norm(), 0., 1e-7, 1.);
     check("  translation", (tip.translation - direct.tip.translation).norm(), 0., 1e-7, 1.);
   }
+  const RigidBodyMotion refined = strip("refined while it bends",
+                                        [](Parameters &p)
+                                        {
+                                          p.adaptivity.interval        = 2;
+                                          p.adaptivity.maximum_level   = 1;
+                                          p.adaptivity.refine_fraction = 0.4;
+                                        })
+                                      .tip;
+  check("refined while it bends: rotation", refined.rotation, Vector3({0, dealii::numbers::PI / 2., 0}), 1e-2);
+  check("  moment", refined.moment[1], direct.moment, 1e-6);
 }
