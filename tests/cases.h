@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <sstream>
@@ -212,6 +213,24 @@ namespace Cases
   inline void check_error(const std::string &what, const double error, const double bound, const int digits = 3)
   {
     report(what, Numbers::error_below(error, bound, digits));
+  }
+
+  /// The last number in the column of energy.csv whose title begins with @p title.
+  inline double last_energy(const std::string &folder, const std::string &title)
+  {
+    std::ifstream file(folder + "/energy.csv");
+    std::string   line, last, cell;
+    std::getline(file, line);
+    std::istringstream titles(line);
+    unsigned int       column = 0;
+    while (std::getline(titles, cell, ',') && cell.compare(0, title.size(), title) != 0)
+      ++column;
+    while (std::getline(file, line))
+      last = line;
+    std::istringstream cells(last);
+    for (unsigned int i = 0; i <= column; ++i)
+      std::getline(cells, cell, ',');
+    return std::stod(cell);
   }
 
   /// Index of the slave node of a pair at a reference position.

@@ -114,6 +114,8 @@ namespace Nodus
       if (parameters_[n].type == Type::rigid_motion) // for messages
         parameters_[n].value.assign(parameters_[n].components.size(), "rigid motion");
     }
+    couples_ =
+        std::any_of(parameters_.begin(), parameters_.end(), [](const auto &condition) { return condition.couples(); });
     add_loads();
     find_stages(interval_ends);
     for (unsigned int stage = stages_.size(); stage-- > 0;) // all are checked, the first one stays
@@ -154,10 +156,11 @@ namespace Nodus
     return "Boundary condition " + std::to_string(condition + 1) + (name.empty() ? "" : " ('" + name + "')");
   }
 
-  /// The condition is the motion of a rigid body with free components.
+  /// The condition is the motion of a rigid body with free components, or a coupled face.
   bool BoundaryConditions::is_driven(const unsigned int condition) const
   {
-    return condition >= n_given_ && driven_[parameters_[condition].region.first_body() - 1];
+    return condition >= n_given_ ? driven_[parameters_[condition].region.first_body() - 1]
+                                 : parameters_[condition].couples();
   }
 
   void BoundaryConditions::add_loads()
@@ -219,9 +222,10 @@ namespace Nodus
         return;
       if (!new_one.second && (is_driven(n) || is_driven(first.condition)))
       {
-        error = label(is_driven(n) ? first.condition : n) + " holds nodes of " +
-                label(is_driven(n) ? n : first.condition) +
-                ", whose motion is in part free; hold it by taking components out of its 'Rigid free'";
+        const unsigned int driven = is_driven(n) ? n : first.condition;
+        error                     = label(is_driven(n) ? first.condition : n) + " holds nodes of " + label(driven) +
+                ", whose motion is in part free; hold it by taking components out of its '" +
+                (driven >= n_given_ ? "Rigid free'" : "Free'");
         return;
       }
       const auto values   = history(*functions_[n], X, e, stage.begin, stage.end);
@@ -326,8 +330,13 @@ namespace Nodus
       if (!lines_.is_constrained(one.dof))
         not_hanging.push_back(one);
     prescribed_ = not_hanging;
+    assembly_lines_.copy_from(lines_);
     for (const auto &one : prescribed_)
+    {
       lines_.add_line(one.dof);
+      if (one.condition >= n_given_ || !is_driven(one.condition))
+        assembly_lines_.add_line(one.dof);
+    }
     homogeneous_.copy_from(lines_);
     homogeneous_.close();
   }
@@ -363,6 +372,14 @@ namespace Nodus
     for (const auto &one : prescribed_)
       if (!is_driven(one.condition))
         increment_.set_inhomogeneity(one.dof, one.value - u(one.dof));
+    if (couples_)
+    {
+      assembly_.copy_from(assembly_lines_);
+      for (const auto &one : prescribed_)
+        if (!is_driven(one.condition))
+          assembly_.set_inhomogeneity(one.dof, one.value - u(one.dof));
+      assembly_.close();
+    }
     increment_.close();
     return increment_;
   }

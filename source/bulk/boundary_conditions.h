@@ -37,8 +37,8 @@ namespace Nodus
     /// evaluated at nodes, at the centres of faces and at the centres of cells, respectively; body forces ignore
     /// boundary ids. @p interval_ends: the times at which conditions may begin or cease to act, and the last of all.
     /// All nodes of the rigid ones among @p body_parameters (of all bodies, or empty) are prescribed, too, for those
-    /// with free components as they are (RigidBodies moves them); nothing else may hold these, nor springs and
-    /// pressures act on them. Bodies, degrees of freedom and mapping outlive the conditions.
+    /// with free components and for coupled faces as they are (RigidBodies moves them); nothing else may hold these,
+    /// nor springs and pressures act on those bodies. Bodies, degrees of freedom and mapping outlive the conditions.
     BoundaryConditions(const std::vector<BoundaryConditionParameters> &parameters,
                        const Bodies                                   &bodies,
                        const dealii::DoFHandler<dim>                  &dof_handler,
@@ -60,6 +60,13 @@ namespace Nodus
     /// The same lines with inhomogeneity prescribed(t) - u, so that the next Newton correction meets the
     /// prescribed value. @p u has ghost entries. The reference stays valid until the next call.
     const dealii::AffineConstraints<double> &increment_constraints(const Vector &u);
+
+    /// Those of the last increment_constraints() without the lines of coupled faces, whose rows and columns of the
+    /// tangent make the border of the system.
+    const dealii::AffineConstraints<double> &assembly_constraints() const
+    {
+      return couples_ ? assembly_ : increment_;
+    }
 
     std::vector<Load> &loads()
     {
@@ -117,8 +124,10 @@ namespace Nodus
     std::vector<std::unique_ptr<dealii::Function<dim>>> functions_;
     std::vector<Prescribed>                             prescribed_; ///< locally relevant
     HangingNodes                                        hanging_;
-    dealii::AffineConstraints<double>                   lines_; ///< not closed: hanging nodes unresolved
-    dealii::AffineConstraints<double>                   homogeneous_, increment_;
+    dealii::AffineConstraints<double>                   lines_;          ///< not closed: hanging nodes unresolved
+    dealii::AffineConstraints<double>                   assembly_lines_; ///< likewise, without coupled faces
+    bool                                                couples_;        ///< some condition is a coupled face
+    dealii::AffineConstraints<double>                   homogeneous_, increment_, assembly_;
     std::vector<Load>                                   loads_;
     std::vector<ReactionRegion>                         reaction_regions_;
   };

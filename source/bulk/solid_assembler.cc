@@ -386,6 +386,11 @@ namespace Nodus
     scratch_->sweep(u, t, internal, external, &constraints, &tangent, &rhs);
   }
 
+  void SolidAssembler::forget_tangent()
+  {
+    scratch_->forget_last();
+  }
+
   void SolidAssembler::make_sparsity(BlockCsrMatrix &tangent) const
   {
     Scratch &s = *scratch_;

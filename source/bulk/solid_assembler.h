@@ -53,6 +53,8 @@ namespace Nodus
                  Vector                                  &rhs,
                  Vector                                  &internal,
                  Vector                                  &external) const;
+    /// The matrix that the last tangent() gave has been changed: the next call assembles it anew.
+    void forget_tangent();
     /// Adds what of the loads' tangent is not symmetric to @p system: Loads::add_variation().
     void
     add_variation(const Vector &u, const dealii::AffineConstraints<double> &constraints, LinearSystem &system) const;

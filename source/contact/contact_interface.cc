@@ -32,8 +32,9 @@ namespace Nodus
   {
     std::vector<unsigned int> rigid_numbers(bodies.size(), dealii::numbers::invalid_unsigned_int);
     for (unsigned int i = 0; i < rigid_bodies.size(); ++i)
-      rigid_numbers[rigid_bodies.body(i)] = i;
-    surfaces_.set_rigid_bodies(rigid_numbers);
+      if (!rigid_bodies.is_face(i))
+        rigid_numbers[rigid_bodies.body(i)] = i;
+    surfaces_.set_rigid_bodies(rigid_numbers, rigid_bodies.size());
     now_.tangents.assign(surfaces_.slave_nodes().size(), {});
     now_.elastic_slip.assign(surfaces_.slave_nodes().size(), Vector3());
     now_.area.assign(surfaces_.slave_nodes().size(), 0.);

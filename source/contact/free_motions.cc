@@ -10,6 +10,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
+#include <set>
 #include <sstream>
 
 namespace Nodus
@@ -79,7 +80,7 @@ namespace Nodus
       centre_.push_back(ends.first + 0.5 * (ends.second - ends.first));
       size_.push_back(0.5 * ends.first.distance(ends.second));
     }
-    for (unsigned int i = 0; i < rigid_bodies.size(); ++i)
+    for (unsigned int i = 0; i < rigid_bodies.size() && !rigid_bodies.is_face(i); ++i)
       centre_[rigid_bodies.body(i)] = rigid_bodies.centre(i);
   }
 
@@ -115,17 +116,25 @@ namespace Nodus
     for (unsigned int i = 0; i < rigid_bodies_.size(); ++i)
     {
       const unsigned int body = rigid_bodies_.body(i);
-      driven[body]            = true;
+      driven[body]            = driven[body] || !rigid_bodies_.is_face(i);
       for (unsigned int c = 0; c < RigidBodies::n_components && first_rank; ++c)
-        if (!rigid_bodies_.is_free(i, c))
+        if (!rigid_bodies_.is_free(i, c) && (c >= dim || rigid_bodies_.moves(i, c)))
         {
-          row_[2 * dim * body + c] = 1.;
+          Vector3 direction;
+          direction[c % dim] = 1.;
+          if (rigid_bodies_.is_face(i) && c < dim)
+            take(body, rigid_bodies_.centre(i), direction);
+          else
+            row_[2 * dim * body + c] = 1.;
           hold();
         }
     }
-    const dealii::IndexSet &owned = dof_handler_.locally_owned_dofs();
+    const std::vector<DoFIndex> coupled = rigid_bodies_.coupled();
+    const std::set<DoFIndex>    moved(coupled.begin(), coupled.end());
+    const dealii::IndexSet     &owned = dof_handler_.locally_owned_dofs();
     for (const DoFIndex dof : owned)
-      if (is_prescribed(constraints, dof) && !driven[nodes_.body[owned.index_within_set(dof) / dim]])
+      if (is_prescribed(constraints, dof) && !driven[nodes_.body[owned.index_within_set(dof) / dim]] &&
+          moved.count(dof) == 0)
         hold(dof);
   }
 

@@ -320,11 +320,10 @@ namespace Nodus
       nodes_[i].cells_through = std::max(1., cells[i][0]);
   }
 
-  void ContactSurfaces::set_rigid_bodies(const std::vector<unsigned int> &numbers)
+  void ContactSurfaces::set_rigid_bodies(const std::vector<unsigned int> &numbers, const unsigned int n)
   {
     held_.rigid_number = numbers;
-    layout_.n_rigid    = std::count_if(
-        numbers.begin(), numbers.end(), [](const auto n) { return n != dealii::numbers::invalid_unsigned_int; });
+    layout_.n_rigid    = n;
     find_rigid_nodes();
   }
 

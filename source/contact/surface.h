@@ -297,8 +297,8 @@ namespace Nodus
       return held_.fixed;
     }
 
-    /// The bodies that move as rigid bodies driven by forces: @p numbers by body, invalid for the others.
-    void set_rigid_bodies(const std::vector<unsigned int> &numbers);
+    /// Numbers of driven rigid bodies by body, invalid for the others; @p n: all that are driven, faces behind bodies.
+    void set_rigid_bodies(const std::vector<unsigned int> &numbers, unsigned int n);
     /// Which of these a node belongs to, or invalid_unsigned_int.
     unsigned int rigid_body(const unsigned int node) const
     {

@@ -54,6 +54,15 @@ namespace Nodus
                const std::string         &what,
                const std::vector<double> &interval_ends);
 
+    /// What drives a rigid body has an effect on its free components, what moves it on the others. @p prefix of the
+    /// keys.
+    void check_free_motion(const Section                    &section,
+                           const std::string                &prefix,
+                           const PrescribedMotionParameters &motion,
+                           const std::vector<unsigned int>  &free,
+                           const std::vector<std::string>   &force,
+                           const std::vector<std::string>   &moment);
+
     /// Different predicates may separate faces of one id; the mesh will tell.
     bool share_faces(const RegionParameters &a, const RegionParameters &b);
 

@@ -91,6 +91,22 @@ namespace Nodus
                     PrescribedMotionParameters &motion,
                     const std::string          &axis,
                     const std::string          &centre);
+    /// Keys "Free", "Force", "Moment" behind @p prefix: what of the motion of @p what is free, and what drives it. @p
+    /// nodes: a sentence on those.
+    void add_drive(ParameterHandler          &prm,
+                   const std::string         &prefix,
+                   const std::string         &what,
+                   const std::string         &nodes,
+                   std::vector<unsigned int> &free,
+                   std::vector<std::string>  &force,
+                   std::vector<std::string>  &moment);
+
+    /// Components by name, axes x, y, z as 0, 1, 2, those of a rigid motion as 0 to 5.
+    void add_components(ParameterHandler          &prm,
+                        const std::string         &key,
+                        std::vector<unsigned int> &components,
+                        const std::string         &documentation,
+                        bool                       rigid = false);
 
     void add_material(ParameterHandler &prm, MaterialParameters &material);
     void add_contact_pair(ParameterHandler &prm, ContactPairParameters &pair);

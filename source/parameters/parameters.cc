@@ -35,30 +35,6 @@ namespace Nodus
         {BoundaryConditionParameters::Type::body_force, "body force"},
         {BoundaryConditionParameters::Type::spring, "spring"}};
 
-    const Names<unsigned int> component_names       = {{0, "x"}, {1, "y"}, {2, "z"}};
-    const Names<unsigned int> rigid_component_names = {{0, "x"}, {1, "y"}, {2, "z"}, {3, "rx"}, {4, "ry"}, {5, "rz"}};
-
-    /// Components by name, axes x, y, z as 0, 1, 2.
-    void add_components(ParameterHandler          &prm,
-                        const std::string         &key,
-                        std::vector<unsigned int> &components,
-                        const std::string         &documentation,
-                        const Names<unsigned int> &names = component_names)
-    {
-      std::string default_text;
-      for (const unsigned int c : components)
-        default_text += (default_text.empty() ? "" : ", ") + names[c].second;
-      prm.declare_entry(
-          key, default_text, Patterns::List(Patterns::Selection(selection(names)), 0, names.size()), documentation);
-      prm.add_action(key,
-                     [&components, &names](const std::string &text)
-                     {
-                       components.clear();
-                       for (const auto &name : dealii::Utilities::split_string_list(text, ','))
-                         components.push_back(value_of(name, names));
-                     });
-    }
-
     void add(ParameterHandler &prm, BodyParameters &body)
     {
       prm.add_parameter("Name", body.name, "Name in tables and messages [-].", Patterns::Anything());
@@ -119,23 +95,7 @@ namespace Nodus
           "Whether the body is rigid and moves as the following keys say [-]; it has no material. One that "
           "carries surfaces in closed form alone (Master surface of contact pairs) needs no mesh either.");
       add_motion(prm, "Rigid ", body.motion, "", "the origin");
-      add_components(prm,
-                     "Rigid free",
-                     body.rigid_free,
-                     "Components of the motion of the rigid body that equilibrium finds, driven by Rigid force and "
-                     "Rigid moment [-]: translation x, y, z of the rotation centre, rotation rx, ry, rz about global "
-                     "axes through it; the others follow Rigid translation and Rigid rotation.",
-                     rigid_component_names);
-      add_expressions(prm,
-                      "Rigid force",
-                      body.rigid_force,
-                      "Force on the rigid body at time t, in global axes [force]: three expressions of t, separated by "
-                      "';'.");
-      add_expressions(prm,
-                      "Rigid moment",
-                      body.rigid_moment,
-                      "Moment on the rigid body at time t about its rotation centre as it moves, in global axes [force "
-                      "length]: three expressions of t, separated by ';'.");
+      add_drive(prm, "Rigid ", "the rigid body", "", body.rigid_free, body.rigid_force, body.rigid_moment);
       prm.enter_subsection("Material");
       add_material(prm, body.material);
       prm.leave_subsection();
@@ -149,7 +109,8 @@ namespace Nodus
           "Type",
           condition.type,
           type_names,
-          "What is prescribed [-]: displacement [length], that of points which move as one rigid body, traction per "
+          "What is prescribed [-]: displacement [length], that of points which move as one rigid body, in part found "
+          "from force and moment where components are Free, traction per "
           "reference area [pressure], pressure that "
           "follows the surface and pushes on the body where positive [pressure], body force per reference volume "
           "[force/volume], spring to the ground per reference area [pressure/length].");
@@ -188,6 +149,13 @@ namespace Nodus
                         "of names, are passed over.",
                         Patterns::FileName());
       add_motion(prm, "", condition.motion, "; of a rigid motion", "the origin");
+      add_drive(prm,
+                "",
+                "the face of a rigid motion",
+                " The nodes follow in the directions of Components.",
+                condition.free,
+                condition.force,
+                condition.moment);
       add_active_time(prm,
                       condition,
                       "condition",

@@ -25,47 +25,6 @@ namespace Nodus
     using ParameterChecks::Section;
     using ParameterChecks::share_faces;
 
-    /// What drives a rigid body has an effect on its free components, what moves it on the others.
-    void check_free_motion(const Section &section, const BodyParameters &body)
-    {
-      std::array<bool, 2 * dim> free{};
-      for (const unsigned int c : body.rigid_free)
-      {
-        section.require(!free[c], "Rigid free", "names a component twice; give each one once");
-        free[c] = true;
-      }
-      const auto check_load =
-          [&](const std::string &key, const std::vector<std::string> &load, const unsigned int first)
-      {
-        section.require(load.size() == dim,
-                        key,
-                        "has " + std::to_string(load.size()) +
-                            " expressions; give three, separated by ';', for example 0; 0; -10*t");
-        for (unsigned int c = 0; c < dim; ++c)
-        {
-          check_expression(section, key, load[c], "t");
-          section.require(load[c] == "0" || free[first + c],
-                          key,
-                          "has '" + load[c] + "' along " + "xyz"[c] +
-                              ", where the motion is prescribed and the force has no effect; set it to 0, or add " +
-                              (first > 0 ? "r" : "") + "xyz"[c] + " to 'Rigid free'");
-        }
-      };
-      check_load("Rigid force", body.rigid_force, 0);
-      check_load("Rigid moment", body.rigid_moment, dim);
-      for (unsigned int c = 0; c < dim; ++c)
-      {
-        section.require(!free[c] || body.motion.translation[c] == "0",
-                        "Rigid translation",
-                        "prescribes '" + body.motion.translation[c] + "' along " + "xyz"[c] +
-                            ", which is among 'Rigid free'; set it to 0, or take it out there");
-        section.require(!free[dim + c] || body.motion.rotation == "0" || body.motion.rotation_axis[c] == 0.,
-                        "Rigid rotation",
-                        std::string("turns the body about r") + "xyz"[c] +
-                            ", which is among 'Rigid free'; remove it, or take that out there");
-      }
-    }
-
     void check(const Section &section, const BodyParameters &body)
     {
       section.require(body.has_mesh() || body.rigid, "Mesh file", "is missing; give either Mesh file or Generator");
@@ -119,7 +78,8 @@ namespace Nodus
         return;
       }
       check(section, body.motion, "Rigid ", Vector3());
-      check_free_motion(section, body);
+      ParameterChecks::check_free_motion(
+          section, "Rigid ", body.motion, body.rigid_free, body.rigid_force, body.rigid_moment);
       section.require(body.volumetric_treatment == BodyParameters::VolumetricTreatment::standard,
                       "Volumetric treatment",
                       "has no effect on a rigid body; remove it");

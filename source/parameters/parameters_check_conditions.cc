@@ -1,7 +1,9 @@
 #include "base/text.h"
+#include "parameters/expression.h"
 #include "parameters/parameter_checks.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 // Boundary conditions: what is prescribed where, by expression, table or rigid motion.
@@ -32,7 +34,78 @@ namespace Nodus
                       key,
                       "has no effect, because Value does not ask for it; write for example 'Value = table'");
     }
+
+    /// A face of one deformable body that acts as long as the run; what is free moves its nodes.
+    void check_coupling(const Section &section, const BoundaryConditionParameters &condition)
+    {
+      ParameterChecks::check_free_motion(
+          section, "", condition.motion, condition.free, condition.force, condition.moment);
+      if (condition.free.empty())
+        return;
+      section.require(condition.region.bodies.size() == 1,
+                      "Body",
+                      "must be one body, for 'Free' couples the nodes of one face; give its number");
+      section.require(condition.active_from == 0. && condition.active_until == 0.,
+                      condition.active_from > 0. ? "Active from" : "Active until",
+                      "has no meaning for a rigid motion with 'Free' components, which acts all the time; remove it, "
+                      "and let Force and Moment depend on t");
+      const auto moves = [&](const unsigned int c)
+      { return std::find(condition.components.begin(), condition.components.end(), c) != condition.components.end(); };
+      for (const unsigned int c : condition.free)
+      {
+        const unsigned int i = c % dim;
+        section.require(c < dim ? moves(i) : moves((i + 1) % dim) || moves((i + 2) % dim),
+                        "Free",
+                        std::string("names ") + (c < dim ? "" : "r") + "xyz"[i] +
+                            ", which moves no node in the directions of 'Components'; add them there");
+      }
+    }
   } // namespace
+
+  void ParameterChecks::check_free_motion(const Section                    &section,
+                                          const std::string                &prefix,
+                                          const PrescribedMotionParameters &motion,
+                                          const std::vector<unsigned int>  &free_components,
+                                          const std::vector<std::string>   &force,
+                                          const std::vector<std::string>   &moment)
+  {
+    const auto                key = [&](const std::string &name) { return prefixed(prefix, name); };
+    std::array<bool, 2 * dim> free{};
+    for (const unsigned int c : free_components)
+    {
+      section.require(!free[c], key("Free"), "names a component twice; give each one once");
+      free[c] = true;
+    }
+    const auto check_load = [&](const std::string &name, const std::vector<std::string> &load, const unsigned int first)
+    {
+      section.require(load.size() == dim,
+                      name,
+                      "has " + std::to_string(load.size()) +
+                          " expressions; give three, separated by ';', for example 0; 0; -10*t");
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        check_expression(section, name, load[c], "t");
+        section.require(load[c] == "0" || free[first + c],
+                        name,
+                        "has '" + load[c] + "' along " + "xyz"[c] +
+                            ", where the motion is prescribed and the force has no effect; set it to 0, or add " +
+                            (first > 0 ? "r" : "") + "xyz"[c] + " to '" + key("Free") + "'");
+      }
+    };
+    check_load(key("Force"), force, 0);
+    check_load(key("Moment"), moment, dim);
+    for (unsigned int c = 0; c < dim; ++c)
+    {
+      section.require(!free[c] || motion.translation[c] == "0",
+                      key("Translation"),
+                      "prescribes '" + motion.translation[c] + "' along " + "xyz"[c] + ", which is among '" +
+                          key("Free") + "'; set it to 0, or take it out there");
+      section.require(!free[dim + c] || motion.rotation == "0" || motion.rotation_axis[c] == 0.,
+                      key("Rotation"),
+                      std::string("turns the body about r") + "xyz"[c] + ", which is among '" + key("Free") +
+                          "'; remove it, or take that out there");
+    }
+  }
 
   void ParameterChecks::check(const Section                     &section,
                               const BoundaryConditionParameters &condition,
@@ -63,8 +136,14 @@ namespace Nodus
       section.require(condition.value.empty() && condition.table_times.empty(),
                       condition.value.empty() ? "Table times" : "Value",
                       "has no effect on a rigid motion; remove it, and give Translation or Rotation");
+      check_coupling(section, condition);
       return check(section, condition, "condition", interval_ends);
     }
+    const BoundaryConditionParameters none;
+    section.require(condition.free.empty() && condition.force == none.force && condition.moment == none.moment,
+                    "Free",
+                    "or Force or Moment has no effect on a " + text_of(condition.type) +
+                        "; remove them, or set 'Type = rigid motion'");
     section.require(!is_given(condition.motion),
                     "Translation",
                     "or Rotation has no effect on a " + text_of(condition.type) +

@@ -139,29 +139,6 @@ namespace Nodus
                       not_negative);
   }
 
-  void ParameterKeys::add_motion(ParameterHandler           &prm,
-                                 const std::string          &prefix,
-                                 PrescribedMotionParameters &motion,
-                                 const std::string          &axis,
-                                 const std::string          &centre)
-  {
-    add_expressions(prm,
-                    prefixed(prefix, "Translation"),
-                    motion.translation,
-                    "Shift at time t [length]: three expressions of t, separated by ';'.");
-    prm.add_parameter(prefixed(prefix, "Rotation"),
-                      motion.rotation,
-                      "Angle turned by at time t, before the translation [degrees]: expression of t, e.g. 90*t.",
-                      Patterns::Anything());
-    prm.add_parameter(prefixed(prefix, "Rotation axis"),
-                      motion.rotation_axis,
-                      "Axis of the rotation, right-handed [-]; three numbers" + axis + ".");
-    prm.add_parameter(prefixed(prefix, "Rotation centre"),
-                      motion.rotation_centre,
-                      "Point that the rotation leaves where it is [length]; three numbers, empty: " + centre + ".",
-                      numbers);
-  }
-
   namespace
   {
     /// A rigid surface instead of a meshed master.

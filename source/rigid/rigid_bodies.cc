@@ -1,4 +1,6 @@
 #include "rigid/rigid_bodies.h"
+#include "mesh/hanging_nodes.h"
+#include "mesh/region.h"
 #include "parameters/expression.h"
 
 #include <deal.II/base/numbers.h>
@@ -7,9 +9,12 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <sstream>
+#include <utility>
 
 namespace Nodus
 {
@@ -24,8 +29,12 @@ namespace Nodus
     }
   } // namespace
 
-  RigidBodies::RigidBodies(const std::vector<BodyParameters> &parameters, const Bodies &bodies, std::vector<State> &now)
-      : now_(now)
+  RigidBodies::RigidBodies(const std::vector<BodyParameters>              &parameters,
+                           const std::vector<BoundaryConditionParameters> &conditions,
+                           const Bodies                                   &bodies,
+                           std::vector<State>                             &now)
+      : all_(bodies)
+      , now_(now)
   {
     for (unsigned int b = 0; b < parameters.size(); ++b)
     {
@@ -34,52 +43,139 @@ namespace Nodus
       Body body;
       body.number = b;
       body.name   = bodies.name(b);
-      for (const unsigned int c : parameters[b].rigid_free)
-        body.free[c] = true;
-      const auto ends = bodies.bounding_box(b).get_boundary_points();
-      body.extent     = 0.5 * ends.first.distance(ends.second);
-      body.motion     = std::make_unique<PrescribedMotion>(parameters[b].motion, Point(), Vector3(), label(body));
-      body.centre     = body.motion->centre();
-
-      std::vector<std::string> expressions = parameters[b].rigid_force;
-      expressions.insert(expressions.end(), parameters[b].rigid_moment.begin(), parameters[b].rigid_moment.end());
-      for (const std::string &expression : expressions)
-        if (const std::string complaint = expression_complaint(expression, "t"); !complaint.empty())
-          throw InputError(label(body) + ": '" + expression + "' cannot be evaluated (" + complaint +
-                           "); write an expression of t");
-      auto loads = std::make_unique<dealii::FunctionParser<1>>(n_components);
-      loads->initialize("t", expressions, {{"pi", dealii::numbers::PI}});
-      body.loads = std::move(loads);
-      bodies_.push_back(std::move(body));
+      body.label  = "Rigid body " + std::to_string(b + 1) + " ('" + body.name + "')";
+      add(std::move(body),
+          parameters[b].motion,
+          parameters[b].rigid_free,
+          parameters[b].rigid_force,
+          parameters[b].rigid_moment);
+    }
+    for (unsigned int n = 0; n < conditions.size(); ++n)
+    {
+      const BoundaryConditionParameters &condition = conditions[n];
+      if (!condition.couples())
+        continue;
+      Body face;
+      face.number = condition.region.first_body() - 1;
+      face.name   = condition.name.empty() ? "boundary condition " + std::to_string(n + 1) : condition.name;
+      face.label =
+          "Boundary condition " + std::to_string(n + 1) + (condition.name.empty() ? "" : " ('" + condition.name + "')");
+      face.face  = &condition;
+      face.moves = {};
+      for (const unsigned int c : condition.components)
+        face.moves[c] = true;
+      add(std::move(face), condition.motion, condition.free, condition.force, condition.moment);
     }
     now_.assign(bodies_.size(), State());
   }
 
-  std::string RigidBodies::label(const Body &body) const
+  void RigidBodies::add(Body                              body,
+                        const PrescribedMotionParameters &motion,
+                        const std::vector<unsigned int>  &free,
+                        std::vector<std::string>          force,
+                        const std::vector<std::string>   &moment)
   {
-    return "Rigid body " + std::to_string(body.number + 1) + " ('" + body.name + "')";
+    for (const unsigned int c : free)
+      body.free[c] = true;
+    const auto ends = all_.bounding_box(body.number).get_boundary_points();
+    body.extent     = 0.5 * ends.first.distance(ends.second);
+    body.motion     = std::make_unique<PrescribedMotion>(motion, Point(), Vector3(), body.label);
+    body.centre     = body.motion->centre();
+
+    std::vector<std::string> &expressions = force;
+    expressions.insert(expressions.end(), moment.begin(), moment.end());
+    for (const std::string &expression : expressions)
+      if (const std::string complaint = expression_complaint(expression, "t"); !complaint.empty())
+        throw InputError(body.label + ": '" + expression + "' cannot be evaluated (" + complaint +
+                         "); write an expression of t");
+    auto loads = std::make_unique<dealii::FunctionParser<1>>(n_components);
+    loads->initialize("t", expressions, {{"pi", dealii::numbers::PI}});
+    body.loads = std::move(loads);
+    bodies_.push_back(std::move(body));
+  }
+
+  std::string RigidBodies::title(const unsigned int i) const
+  {
+    std::string text = bodies_[i].label;
+    text.erase(std::remove(text.begin(), text.end(), '\''), text.end());
+    text.front() = static_cast<char>(std::tolower(text.front()));
+    return text;
   }
 
   void RigidBodies::find_nodes(const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping)
   {
-    const auto             &fe    = dof_handler.get_fe();
-    const dealii::IndexSet &owned = dof_handler.locally_owned_dofs();
-    std::vector<DoFIndex>   dofs(fe.n_dofs_per_cell());
+    const auto                         &fe     = dof_handler.get_fe();
+    const auto                         &scalar = fe.base_element(0);
+    const dealii::IndexSet             &owned  = dof_handler.locally_owned_dofs();
+    std::vector<DoFIndex>               dofs(fe.n_dofs_per_cell());
+    std::unique_ptr<const HangingNodes> hanging;
+    if (has_faces())
+    {
+      hanging = std::make_unique<HangingNodes>(dof_handler);
+      hanging_.copy_from(hanging_constraints(dof_handler));
+    }
     for (Body &body : bodies_)
     {
+      const auto region = body.face ? std::make_unique<Region>(body.face->region, all_, body.label) : nullptr;
       std::map<DoFIndex, Point> found;
+      const auto                take = [&](const auto &cell, const unsigned int node)
+      {
+        const DoFIndex dof = dofs[fe.component_to_system_index(0, node)];
+        if (!owned.is_element(dof) || found.count(dof) > 0)
+          return;
+        const Point X = mapping.transform_unit_to_real_cell(cell, scalar.unit_support_point(node));
+        if (!region || (region->contains_point(X) && !hanging->masters(dof / dim)))
+          found[dof] = X;
+      };
       for (const auto &cell : dof_handler.active_cell_iterators())
         if (!cell->is_artificial() && cell->material_id() == body.number)
         {
           cell->get_dof_indices(dofs);
-          for (unsigned int i = 0; i < dofs.size(); ++i)
-            if (const auto [component, node] = fe.system_to_component_index(i);
-                component == 0 && owned.is_element(dofs[i]) && found.count(dofs[i]) == 0)
-              found[dofs[i]] = mapping.transform_unit_to_real_cell(cell, fe.base_element(0).unit_support_point(node));
+          for (unsigned int node = 0; node < scalar.n_dofs_per_cell() && !region; ++node)
+            take(cell, node);
+          for (const auto face : cell->face_indices())
+            if (region && region->contains_face(cell, face))
+              for (unsigned int node = 0; node < scalar.n_dofs_per_cell(); ++node)
+                if (scalar.has_support_on_face(node, face))
+                  take(cell, node);
         }
       body.nodes.clear();
       for (const auto &[dof, X] : found)
         body.nodes.push_back({dof, X});
+    }
+  }
+
+  std::vector<DoFIndex> RigidBodies::coupled() const
+  {
+    std::vector<DoFIndex> dofs;
+    for (const Body &body : bodies_)
+      for (const Node &node : body.nodes)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (body.face && body.moves[c])
+            dofs.push_back(node.dof + c);
+    return dofs;
+  }
+
+  dealii::Tensor<2, dim> RigidBodies::turned(const unsigned int i) const
+  {
+    return rotation_by(now_[i].turn) * now_[i].rotation;
+  }
+
+  Vector3 RigidBodies::arm(const unsigned int i, const Node &node) const
+  {
+    return turned(i) * (node.X - bodies_[i].centre);
+  }
+
+  void RigidBodies::add_force(const unsigned int i, const Vector3 &arm, const Vector3 &force, double *const sums) const
+  {
+    Vector3 on = force;
+    for (unsigned int c = 0; c < dim; ++c)
+      on[c] = moves(i, c) ? force[c] : 0.;
+    const Vector3 moment = dealii::cross_product_3d(arm, on);
+    for (unsigned int c = 0; c < dim; ++c)
+    {
+      sums[c] += on[c];
+      sums[dim + c] += moment[c];
     }
   }
 
@@ -94,7 +190,7 @@ namespace Nodus
         if (!std::isfinite(body.load[c]))
         {
           std::ostringstream message;
-          message << label(body) << ": " << (c < dim ? "force " : "moment ") << "xyz"[c % dim] << " at t = " << t
+          message << body.label << ": " << (c < dim ? "force " : "moment ") << "xyz"[c % dim] << " at t = " << t
                   << " is not a number; correct the expression";
           throw InputError(message.str());
         }
@@ -150,7 +246,7 @@ namespace Nodus
         now_[i].turn[c] += factor * correction[n_components * i + dim + c];
       }
       if (!(now_[i].turn.norm() < dealii::numbers::PI))
-        throw SolverFailure(label(bodies_[i]) + " turns by more than half a turn in one increment",
+        throw SolverFailure(bodies_[i].label + " turns by more than half a turn in one increment",
                             SolverFailure::Kind::free_body);
     }
   }
@@ -160,27 +256,26 @@ namespace Nodus
     for (unsigned int i = 0; i < bodies_.size(); ++i)
     {
       const Body                  &body = bodies_[i];
-      const dealii::Tensor<2, dim> R    = rotation_by(now_[i].turn) * now_[i].rotation;
+      const dealii::Tensor<2, dim> R    = turned(i);
       for (const Node &node : body.nodes)
       {
         const Vector3 r     = node.X - body.centre;
         const Vector3 moved = now_[i].translation + (R * r - r);
         for (unsigned int c = 0; c < dim; ++c)
-          u(node.dof + c) = moved[c];
+          if (body.moves[c])
+            u(node.dof + c) = moved[c];
       }
     }
     if (!bodies_.empty())
       u.compress(dealii::VectorOperation::insert);
+    if (has_faces())
+      hanging_.distribute(u);
   }
 
   void RigidBodies::end_increment(const std::vector<Components> &applied)
   {
     for (unsigned int i = 0; i < bodies_.size(); ++i)
-      now_[i] = {now_[i].translation,
-                 Vector3(),
-                 rotation_by(now_[i].turn) * now_[i].rotation,
-                 bodies_[i].prescribed_rotation,
-                 applied[i]};
+      now_[i] = {now_[i].translation, Vector3(), turned(i), bodies_[i].prescribed_rotation, applied[i]};
   }
 
   double RigidBodies::work(const std::vector<State> &before, const std::vector<Components> &applied) const
@@ -197,7 +292,7 @@ namespace Nodus
 
   Vector3 RigidBodies::rotation(const unsigned int i) const
   {
-    const dealii::Tensor<2, dim> R = rotation_by(now_[i].turn) * now_[i].rotation;
+    const dealii::Tensor<2, dim> R = turned(i);
     Eigen::Matrix3d              matrix;
     for (unsigned int r = 0; r < dim; ++r)
       for (unsigned int c = 0; c < dim; ++c)

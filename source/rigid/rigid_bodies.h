@@ -8,6 +8,7 @@
 #include <deal.II/base/function_parser.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/mapping.h>
+#include <deal.II/lac/affine_constraints.h>
 
 #include <array>
 #include <memory>
@@ -18,6 +19,9 @@ namespace Nodus
 {
   /// The rigid bodies with a mesh that forces and moments drive: those with free components. The motion of each has six
   /// components about global axes, translation of its centre and rotation about it: x = c + T + R (X - c).
+  ///
+  /// Behind them stand the coupled faces of deformable bodies: the nodes of each move as those of a rigid body, in some
+  /// components or all.
   ///
   /// The unknowns of an increment are T and the rotation vector theta of the increment, R = exp(theta) R_begin; those
   /// that are not free follow the prescribed motion, theta the increment of its rotation vector. Every rank holds all
@@ -48,13 +52,25 @@ namespace Nodus
 
     /// @p now, one for each driven body, outlives the object, and is what it moves; it is set to that at rest.
     /// @throws InputError on every rank where an expression does not parse.
-    RigidBodies(const std::vector<BodyParameters> &parameters, const Bodies &bodies, std::vector<State> &now);
+    RigidBodies(const std::vector<BodyParameters>              &parameters,
+                const std::vector<BoundaryConditionParameters> &conditions,
+                const Bodies                                   &bodies,
+                std::vector<State>                             &now);
 
     unsigned int size() const
     {
       return bodies_.size();
     }
-    /// Index of a driven one among all bodies.
+    /// Whether it is a coupled face.
+    bool is_face(const unsigned int i) const
+    {
+      return bodies_[i].face != nullptr;
+    }
+    bool has_faces() const
+    {
+      return !bodies_.empty() && bodies_.back().face;
+    }
+    /// Index of a driven one, or of the body that a face belongs to, among all bodies.
     unsigned int body(const unsigned int i) const
     {
       return bodies_[i].number;
@@ -63,7 +79,9 @@ namespace Nodus
     {
       return bodies_[i].name;
     }
-    bool is_free(const unsigned int i, const unsigned int component) const
+    /// "rigid body 2 (punch)", for messages.
+    std::string title(unsigned int i) const;
+    bool        is_free(const unsigned int i, const unsigned int component) const
     {
       return bodies_[i].free[component];
     }
@@ -79,11 +97,22 @@ namespace Nodus
       DoFIndex dof;
       Point    X;
     };
-    /// Its owned nodes on the mesh as it is.
+    /// Its owned nodes on the mesh as it is, of a face without hanging ones.
     const std::vector<Node> &nodes(const unsigned int i) const
     {
       return bodies_[i].nodes;
     }
+    /// Whether its nodes follow it in direction @p c.
+    bool moves(const unsigned int i, const unsigned int c) const
+    {
+      return bodies_[i].moves[c];
+    }
+    /// The owned degrees of freedom that follow coupled faces.
+    std::vector<DoFIndex> coupled() const;
+    /// From its centre to one of its nodes, as they are now.
+    Vector3 arm(unsigned int i, const Node &node) const;
+    /// Adds to six @p sums, force and moment, what a force at a node, @p arm away from the centre, does to it.
+    void add_force(unsigned int i, const Vector3 &arm, const Vector3 &force, double *sums) const;
     /// Once the mesh is new.
     void find_nodes(const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping);
 
@@ -108,7 +137,7 @@ namespace Nodus
     /// unknowns += factor * correction, six of each body. @throws SolverFailure where a body turns by more than half
     /// a turn in the increment.
     void advance(double factor, const std::vector<double> &correction);
-    /// Sets the displacements of the nodes, owned ones. Collective.
+    /// Sets the displacements of the nodes, owned ones, and of what hangs on coupled faces. Collective.
     void move(Vector &u) const;
 
     /// The increment ends here with the forces and moments @p applied to each body: the next one begins.
@@ -129,8 +158,10 @@ namespace Nodus
     struct Body
     {
       unsigned int                                     number;
-      std::string                                      name;
+      std::string                                      name, label;
+      const BoundaryConditionParameters               *face = nullptr; ///< null: the whole body
       std::array<bool, n_components>                   free{};
+      std::array<bool, dim>                            moves{{true, true, true}};
       double                                           extent;
       Point                                            centre; ///< at the start
       std::unique_ptr<const PrescribedMotion>          motion;
@@ -139,9 +170,19 @@ namespace Nodus
       Components                                       load{};
       Vector3                                          prescribed_translation, prescribed_rotation; ///< at the time set
     };
-    std::string         label(const Body &body) const;
-    std::vector<Body>   bodies_;
-    std::vector<State> &now_;
+    /// What drives a body: expressions of force and moment, and the motion of the other components.
+    void add(Body                              body,
+             const PrescribedMotionParameters &motion,
+             const std::vector<unsigned int>  &free,
+             std::vector<std::string>          force,
+             const std::vector<std::string>   &moment);
+    /// Where it is: R of x = c + T + R (X - c).
+    dealii::Tensor<2, dim> turned(unsigned int i) const;
+
+    const Bodies                     &all_;
+    std::vector<Body>                 bodies_;
+    std::vector<State>               &now_;
+    dealii::AffineConstraints<double> hanging_; ///< where there are coupled faces: their neighbours follow
   };
 } // namespace Nodus
 

@@ -65,22 +65,17 @@ namespace Nodus
     return worst;
   }
 
-  double rigid_body_imbalance(const Model &model, const Vector &u, const Vector &forces, const double scale)
+  double rigid_body_imbalance(const Model &model, const Vector &forces, const double scale)
   {
     constexpr unsigned int n      = RigidBodies::n_components;
     const RigidBodies     &bodies = model.rigid_bodies;
     std::vector<double>    sums(n * bodies.size(), 0.);
     for (unsigned int b = 0; b < bodies.size(); ++b)
       for (const RigidBodies::Node &node : bodies.nodes(b))
-      {
-        Vector3 arm = node.X - bodies.centre(b), force;
-        for (unsigned int c = 0; c < dim; ++c)
-        {
-          arm[c] += u(node.dof + c);
-          force[c] = forces(node.dof + c);
-        }
-        add_force(sums.data() + n * b, arm, force);
-      }
+        bodies.add_force(b,
+                         bodies.arm(b, node),
+                         Vector3({forces(node.dof), forces(node.dof + 1), forces(node.dof + 2)}),
+                         sums.data() + n * b);
     dealii::Utilities::MPI::sum(sums, model.communicator, sums);
     Largest worst;
     for (unsigned int b = 0; b < bodies.size(); ++b)

@@ -46,32 +46,31 @@ namespace Nodus
   {
   }
 
-  /// Adds the forces at the nodes of driven rigid bodies, viscous ones included, to the border and to the resultants
+  /// Adds the forces at the nodes of what is driven, viscous ones included, to the border and to the resultants
   /// of the residual. Of this rank.
   void DrivenRigidBodies::add_nodes(LinearSystem &system, const Vector &internal, const Vector &external)
   {
     const RigidBodies     &rigid_bodies = model_.rigid_bodies;
     const ContactSurfaces &surfaces     = model_.contact->surfaces();
-    const Vector          &u            = states_.now.unknowns.block(0);
     ContactResidual       &residual     = model_.contact->residual();
     const BlockLayout     &layout       = surfaces.layout();
     for (unsigned int b = 0; b < rigid_bodies.size(); ++b)
-    {
-      const Point centre = rigid_bodies.centre(b);
       for (const RigidBodies::Node &node : rigid_bodies.nodes(b))
       {
-        const Vector3 arm = node.X - centre + at(node, u), force = at(node, internal) - at(node, external);
-        const double  k = model_.stabilisation->resistance(layout.owned[0].index_within_set(node.dof));
+        const Vector3 arm   = rigid_bodies.arm(b, node);
+        Vector3       force = at(node, internal) - at(node, external);
+        rigid_bodies.add_force(b, arm, force, residual.rigid.data() + n_components * b);
+        if (rigid_bodies.is_face(b)) // all but the turn of the force stands in what take_faces() took
+        {
+          for (unsigned int c = 0; c < dim; ++c)
+            force[c] = rigid_bodies.moves(b, c) ? force[c] : 0.;
+          add_turn(layout, b, arm, force, system.border);
+          continue;
+        }
+        const double k = model_.stabilisation->resistance(layout.owned[0].index_within_set(node.dof));
         if (force == Vector3() && k == 0.)
           continue;
-        const Vector3 moment = dealii::cross_product_3d(arm, force);
-        for (unsigned int c = 0; c < dim; ++c)
-        {
-          residual.rigid[n_components * b + c] += force[c];
-          residual.rigid[n_components * b + dim + c] += moment[c];
-          system.border_rhs[n_components * b + c] -= force[c];
-          system.border_rhs[n_components * b + dim + c] -= moment[c];
-        }
+        rigid_bodies.add_force(b, arm, -force, system.border_rhs.data() + n_components * b);
         add_turn(layout, b, arm, force, system.border);
         const auto add_row = [&](const DoFIndex row, const double row_part, const unsigned int c)
         {
@@ -86,7 +85,10 @@ namespace Nodus
           surfaces.for_each_rigid_unknown(
               b, c, 1., arm, [&](const DoFIndex row, const double part) { add_row(row, part, c); });
       }
-    }
+    for (std::size_t k = 0; k < face_border_.value.size(); ++k)
+      system.border.add(face_border_.row[k], face_border_.column[k], face_border_.value[k]);
+    for (unsigned int i = 0; i < face_rhs_.size(); ++i)
+      system.border_rhs[i] += face_rhs_[i];
   }
 
   /// Viscous forces on the nodes of driven rigid bodies, which the bulk takes for prescribed ones.
@@ -94,7 +96,7 @@ namespace Nodus
   {
     const RigidBodies     &rigid_bodies = model_.rigid_bodies;
     const ContactSurfaces &surfaces     = model_.contact->surfaces();
-    for (unsigned int b = 0; b < rigid_bodies.size(); ++b)
+    for (unsigned int b = 0; b < rigid_bodies.size() && !rigid_bodies.is_face(b); ++b)
       for (const RigidBodies::Node &node : rigid_bodies.nodes(b))
       {
         const double k = model_.stabilisation->resistance(surfaces.layout().owned[0].index_within_set(node.dof));
@@ -138,21 +140,10 @@ namespace Nodus
   std::vector<double> DrivenRigidBodies::resultants(const Vector &forces) const
   {
     const RigidBodies  &rigid_bodies = model_.rigid_bodies;
-    const Vector       &u            = states_.now.unknowns.block(0);
     std::vector<double> sums(n_components * rigid_bodies.size(), 0.);
     for (unsigned int b = 0; b < rigid_bodies.size(); ++b)
-    {
-      const Point centre = rigid_bodies.centre(b);
       for (const RigidBodies::Node &node : rigid_bodies.nodes(b))
-      {
-        const Vector3 force = at(node, forces), moment = dealii::cross_product_3d(node.X - centre + at(node, u), force);
-        for (unsigned int c = 0; c < dim; ++c)
-        {
-          sums[n_components * b + c] += force[c];
-          sums[n_components * b + dim + c] += moment[c];
-        }
-      }
-    }
+        rigid_bodies.add_force(b, rigid_bodies.arm(b, node), at(node, forces), sums.data() + n_components * b);
     return sums;
   }
 
@@ -323,8 +314,7 @@ namespace Nodus
           part[c / dim][c % dim] = motion[i];
       if (part[0].norm() + part[1].norm() == 0.)
         continue;
-      text += (text.empty() ? "" : ", together with ") + std::string("rigid body ") +
-              std::to_string(rigid_bodies.body(b) + 1) + " (" + rigid_bodies.name(b) + ")";
+      text += (text.empty() ? "" : ", together with ") + rigid_bodies.title(b);
       if (part[0].norm() > 0.)
         text += " moves along " + text_of(part[0] / part[0].norm());
       if (part[1].norm() > 0.)

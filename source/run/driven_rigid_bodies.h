@@ -20,7 +20,7 @@ namespace Nodus
     std::vector<double> rigid_missing; ///< likewise: prescribed components
   };
 
-  /// Rigid bodies that forces and moments drive: their equilibrium, and their part in the correction.
+  /// Rigid bodies and coupled faces that forces and moments drive: their equilibrium, and their part in the correction.
   class DrivenRigidBodies
   {
   public:
@@ -32,12 +32,16 @@ namespace Nodus
       waits_ = 0;
     }
 
-    /// Viscous forces on their nodes against @p moved, which the bulk takes for prescribed ones.
+    /// Takes the rows and columns of coupled faces out of bulk and right-hand side of @p system, to stay there until
+    /// add_to() adds them to its border. Collective.
+    void take_faces(LinearSystem &system);
+
+    /// Viscous forces on the nodes of bodies against @p moved, which the bulk takes for prescribed ones.
     void add_drag(const Vector &moved, Vector &drag) const;
 
-    /// Adds the forces at their nodes to the border of @p system and to the residual of contact, and to @p norms how
-    /// far they are from equilibrium and what their prescribed components still lack. @p force_scale of the nodes, @p
-    /// length of the increment. Collective.
+    /// Adds the forces at their nodes, and what take_faces() took, to the border of @p system and to the residual of
+    /// contact, and to @p norms how far they are from equilibrium and what their prescribed components still lack. @p
+    /// force_scale of the nodes, @p length of the increment. Collective.
     void add_to(LinearSystem         &system,
                 const Vector         &internal,
                 const Vector         &external,
@@ -85,21 +89,24 @@ namespace Nodus
                                                   const std::vector<double> &missing) const;
     /// The free components at right-hand side @p k, which is @p rhs; motions whose stiffness is below @p free_fraction
     /// are free.
-    dealii::Vector<double> resolve(const BorderedSystem                &bordered,
-                                   unsigned int                         k,
-                                   const BorderedSystem::RightHandSide &rhs,
-                                   const Equations                     &equations,
-                                   double                               free_fraction,
-                                   std::string                         &free);
-    void                   add_nodes(LinearSystem &system, const Vector &internal, const Vector &external);
-    bool                   may_wait_for_friction(double force) const;
-    std::string            describe(const std::vector<double> &motion) const;
+    dealii::Vector<double>           resolve(const BorderedSystem                &bordered,
+                                             unsigned int                         k,
+                                             const BorderedSystem::RightHandSide &rhs,
+                                             const Equations                     &equations,
+                                             double                               free_fraction,
+                                             std::string                         &free);
+    std::vector<std::vector<double>> face_motions(const LinearSystem &system, std::vector<double> &coupled) const;
+    void                             add_nodes(LinearSystem &system, const Vector &internal, const Vector &external);
+    bool                             may_wait_for_friction(double force) const;
+    std::string                      describe(const std::vector<double> &motion) const;
 
     const Model                         &model_;
     const States                        &states_;
     std::vector<double>                  correction_, rate_; ///< rate_: its change per time, if that is asked for
     unsigned int                         waits_ = 0;         ///< corrections in which some wait for friction
     std::vector<RigidBodies::Components> applied_;
+    TripletMatrix                        face_border_; ///< of take_faces()
+    std::vector<double>                  face_rhs_;
   };
 } // namespace Nodus
 

@@ -137,13 +137,14 @@ namespace Nodus
 
   NewtonProblem::Norms Equilibrium::evaluate(const bool measure)
   {
-    const Vector &u = states_.now.unknowns.block(0);
-    u_              = u;
-    constraints_    = &model_.boundary_conditions->increment_constraints(u_);
+    const Vector &u      = states_.now.unknowns.block(0);
+    u_                   = u;
+    constraints_         = &model_.boundary_conditions->increment_constraints(u_);
+    const auto &assembly = model_.boundary_conditions->assembly_constraints();
     {
       const auto timer = journal_.profile.time(Phase::bulk_assembly);
       Vector    &rhs   = system_.rhs.block(0);
-      model_.solid->tangent(u_, increment_.end, *constraints_, system_.bulk, rhs, forces_.internal, forces_.external);
+      model_.solid->tangent(u_, increment_.end, assembly, system_.bulk, rhs, forces_.internal, forces_.external);
       forces_.external += forces_.released;
       rhs += forces_.released;
       forces_.drag = 0.;
@@ -155,11 +156,12 @@ namespace Nodus
           moved.add(part - 1., states_.committed.unknowns.block(0));
         if (part > 0.)
           moved.add(-part, anchor_);
-        model_.stabilisation->add(moved, *constraints_, system_.bulk, forces_.drag);
+        model_.stabilisation->add(moved, assembly, system_.bulk, forces_.drag);
         driven_.add_drag(moved, forces_.drag);
         forces_.external += forces_.drag;
         rhs += forces_.drag;
       }
+      driven_.take_faces(system_);
       bulk_rhs_ = rhs;
     }
     if (!measure)
@@ -273,7 +275,7 @@ namespace Nodus
       singular_ = singular_ || !free.empty();
       if (!free.empty())
         throw SolverFailure("the system is singular: " + free + ", and nothing resists it; " +
-                                ways_to_hold("take components out of 'Rigid free'"),
+                                ways_to_hold("take components out of 'Rigid free' or 'Free'"),
                             SolverFailure::Kind::free_body);
     }
     const BlockLayout &layout = model_.contact->surfaces().layout();

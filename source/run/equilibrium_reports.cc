@@ -16,7 +16,8 @@ namespace Nodus
     for (unsigned int b = 0; b < model_.rigid_bodies.size(); ++b) // what drives these counts as force and moment
       for (const RigidBodies::Node &node : model_.rigid_bodies.nodes(b))
         for (unsigned int c = 0; c < dim; ++c)
-          applied(node.dof + c) = forces_.external(node.dof + c) - forces_.drag(node.dof + c);
+          if (model_.rigid_bodies.moves(b, c))
+            applied(node.dof + c) = forces_.external(node.dof + c) - forces_.drag(node.dof + c);
     applied.compress(dealii::VectorOperation::insert);
     return applied;
   }
@@ -48,6 +49,12 @@ namespace Nodus
 
   std::string Equilibrium::ways_to_hold(const std::string &first) const
   {
-    return Nodus::ways_to_hold(model_, states_.now, increment_, first);
+    // what resists a coupled face may be slender, and its stiffness less than an iterative solver tells from none
+    const bool untold = model_.rigid_bodies.has_faces() && solver_->type() != LinearSolverParameters::Type::direct;
+    return Nodus::ways_to_hold(model_,
+                               states_.now,
+                               increment_,
+                               first +
+                                   (untold ? ", set 'Linear solver/Type = direct' if a slender part resists it" : ""));
   }
 } // namespace Nodus

@@ -2,6 +2,7 @@
 #include "bulk/rigid_material.h"
 #include "contact/initial_overlap.h"
 #include "mesh/sides.h"
+#include "parallel/throw_everywhere.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -78,7 +79,7 @@ namespace Nodus
       , fe(dealii::FE_Q<dim>(parameters.degree), dim)
       , dof_handler(bodies.triangulation())
       , materials(make_materials(parameters.bodies))
-      , rigid_bodies(parameters.bodies, bodies, states.now.rigid)
+      , rigid_bodies(parameters.bodies, parameters.boundary_conditions, bodies, states.now.rigid)
   {
     if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 && !parameters.contact_pairs.empty())
       balance_contact(parameters.contact_pairs, *mapping, bodies);
@@ -114,6 +115,7 @@ namespace Nodus
                                                  rigid_bodies,
                                                  now.contact);
     contact->surfaces().set_fixed(boundary_conditions->homogeneous_constraints());
+    refuse_coupled_contact();
 
     const BlockLayout &layout = contact->surfaces().layout();
     layout.reinit(now.unknowns);
@@ -130,6 +132,27 @@ namespace Nodus
     }
     stiffest_cell = Nodus::stiffest_cell(bodies, materials, fe.degree, communicator);
     contact->gather(now.unknowns, now.unknowns.block(0));
+  }
+
+  /// Contact does not know how coupled faces move.
+  void Model::refuse_coupled_contact() const
+  {
+    const ContactSurfaces &surfaces = contact->surfaces();
+    if (!rigid_bodies.has_faces() || surfaces.n_pairs() == 0)
+      return;
+    Vector coupled(surfaces.layout().owned[0], communicator);
+    for (const DoFIndex dof : rigid_bodies.coupled())
+      coupled(dof) = 1.;
+    coupled.compress(dealii::VectorOperation::insert);
+    std::vector<Vector3> at_nodes;
+    surfaces.gather(coupled, at_nodes);
+    std::string error;
+    for (unsigned int n = 0; n < at_nodes.size() && error.empty(); ++n)
+      if (at_nodes[n] != Vector3())
+        error = "the node at " + coordinates(surfaces.nodes()[n].X) +
+                " of a contact surface belongs to a face whose rigid motion is in part 'Free'; leave a row of faces "
+                "between the two ('Slave where', 'Master where'), or prescribe that motion";
+    throw_everywhere<InputError>(error, communicator);
   }
 
   void Model::set_conditions(const double t)

@@ -27,6 +27,8 @@ namespace Nodus
     /// @p states outlive it; they are set to those at rest. Collective. @throws InputError
     Model(const Parameters &parameters, MPI_Comm communicator, States &states);
 
+    /// @throws InputError on every rank where nodes of coupled faces are part of contact surfaces.
+    void refuse_coupled_contact() const;
     /// All that is made for the mesh as it is. The state at hand is at rest then, but for what does not depend on the
     /// mesh: rigid bodies, energies.
     void set_up_mesh(State &now);

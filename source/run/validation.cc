@@ -133,6 +133,9 @@ namespace Nodus
              << condition.motion.rotation;
       else
         text << ", value " << joined(condition.value, "; ");
+      for (const unsigned int c : condition.free)
+        text << (c == condition.free.front() ? ", free to " : ", ") << (c < dim ? "move along " : "turn about ")
+             << "xyz"[c % dim];
       return text.str();
     }
 

@@ -167,6 +167,17 @@ namespace Nodus
                     i > j);
   }
 
+  void BlockCsrMatrix::decouple(const std::vector<double> &chosen)
+  {
+    const NodeValues at = map_->with_ghosts(chosen.data());
+    for (unsigned int i = 0; i < map_->n_owned(); ++i)
+      for (std::uint32_t k = pattern_->start[i]; k < pattern_->start[i + 1]; ++k)
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < dim; ++d)
+            if ((at[i][c] != 0. || at[pattern_->column[k]][d] != 0.) && (i != pattern_->column[k] || c != d))
+              values_[9 * std::size_t(k) + dim * c + d] = 0.;
+  }
+
   bool BlockCsrMatrix::decoupled(const unsigned int dof) const
   {
     const NodePattern &p = *pattern_;

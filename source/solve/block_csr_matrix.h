@@ -221,6 +221,9 @@ namespace Nodus
     {
       values_[9 * std::size_t(pattern_->start[dof / dim]) + 4 * (dof % dim)] += value;
     }
+    /// Leaves nothing but the diagonal in the rows and columns of @p chosen, not zero, among the owned degrees of
+    /// freedom. Collective.
+    void decouple(const std::vector<double> &chosen);
     /// True when the row of an owned degree of freedom holds nothing but the diagonal: a constrained one.
     bool decoupled(unsigned int dof) const;
 

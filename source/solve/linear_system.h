@@ -24,7 +24,7 @@ namespace Nodus
     DoFIndex                        n_u;
     DoFIndex                        n_slave_nodes;
     std::vector<DoFIndex>           slave_nodes; ///< of the owned ones: global displacement node, its dofs are 3i + c
-    unsigned int                    n_rigid = 0; ///< bodies that forces and moments drive
+    unsigned int                    n_rigid = 0; ///< bodies and coupled faces that forces and moments drive
 
     DoFIndex lambda(const DoFIndex k) const
     {
@@ -84,14 +84,15 @@ namespace Nodus
   /// tractions and laws with respect to lambda, and that of forces, gaps and friction laws with respect to pairing,
   /// areas and frames.
   ///
-  /// Prescribed displacements are eliminated: their rows hold a positive diagonal only and no contact coupling.
+  /// Prescribed displacements, and those of coupled faces, are eliminated: their rows hold a positive diagonal only and
+  /// no contact coupling.
   struct LinearSystem
   {
     const BlockLayout *layout;
     BlockCsrMatrix     bulk;
     TripletMatrix      contact, variation;
-    /// Entries with the row or the column of a rigid body: translation, and spin about its centre. Not part of what a
-    /// LinearSolver solves (BorderedSystem).
+    /// Entries with the row or the column of a rigid body or face: translation, and spin about its centre. Not part of
+    /// what a LinearSolver solves (BorderedSystem).
     TripletMatrix       border;
     std::vector<double> border_rhs; ///< six per rigid body, to be summed over the ranks
     BlockVector         rhs;

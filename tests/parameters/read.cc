@@ -99,6 +99,9 @@ namespace
           condition.table_file.empty() || condition.table_file == SOURCE_DIR "/load.csv");
     print("table file", !condition.table_file.empty());
     print("motion", condition.motion);
+    print("free", condition.free);
+    print("force", condition.force);
+    print("moment", condition.moment);
     print("active from", condition.active_from);
     print("active until", condition.active_until);
   }

@@ -6,8 +6,6 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <fstream>
-
 using namespace Cases;
 
 namespace
@@ -20,24 +18,6 @@ namespace
     auto c   = condition(name, BoundaryConditionParameters::Type::rigid_motion, where, components, {});
     c.motion = motion;
     return c;
-  }
-
-  /// The last number in the column of energy.csv whose title begins with @p title.
-  double last_energy(const std::string &folder, const std::string &title)
-  {
-    std::ifstream file(folder + "/energy.csv");
-    std::string   line, last, cell;
-    std::getline(file, line);
-    std::istringstream titles(line);
-    unsigned int       column = 0;
-    while (std::getline(titles, cell, ',') && cell.compare(0, title.size(), title) != 0)
-      ++column;
-    while (std::getline(file, line))
-      last = line;
-    std::istringstream cells(last);
-    for (unsigned int i = 0; i <= column; ++i)
-      std::getline(cells, cell, ',');
-    return std::stod(cell);
   }
 } // namespace
 

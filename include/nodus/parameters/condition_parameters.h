@@ -94,6 +94,9 @@ namespace Nodus
     std::vector<double>        table_values; ///< ... and its values, linear between them [as type says]
     std::string                table_file;   ///< that has them; Parameters::read() replaces it by these
     PrescribedMotionParameters motion;       ///< of type rigid_motion; keys "Translation", "Rotation", ...
+    std::vector<unsigned int>  free; ///< components of a rigid motion that force and moment drive, as of rigid bodies
+    std::vector<std::string>   force  = {"0", "0", "0"}; ///< muParser expressions of t [force]
+    std::vector<std::string>   moment = {"0", "0", "0"}; ///< about the rotation centre as it moves [force length]
     /// What a program sets instead of the expressions, called with reference position, time and place in value, which
     /// keeps its length. It may follow what the program sees after an increment: what it gives changes from increment
     /// to increment alone, and is the same on every rank.
@@ -103,6 +106,11 @@ namespace Nodus
     bool holds() const
     {
       return type == Type::displacement || type == Type::rigid_motion;
+    }
+    /// Whether it couples its nodes to a rigid motion that equilibrium finds.
+    bool couples() const
+    {
+      return type == Type::rigid_motion && !free.empty();
     }
   };
 } // namespace Nodus
