@@ -18,9 +18,10 @@ namespace Nodus
     /// of a quadratic face keep positive integrals down to here.
     constexpr double dual_coverage = 0.75;
     constexpr double dual_growth   = 1. / (1. - dual_coverage - 1e-8);
-    /// A node with this part of its surface covered, or more, has a constraint of its own. Where a corner of the master
-    /// lies at a node it is a quarter.
-    constexpr double well_covered = 0.2;
+    /// A node with this part of its surface covered, or more, gets a constraint of its own, and keeps it down to the
+    /// second: an equilibrium in which it goes with it and comes back without is found by no iteration. Where a corner
+    /// of the master lies at a node a quarter is covered.
+    constexpr double well_covered = 0.2, still_covered = 0.1;
     /// Less of the node's surface than this has no partner worth a constraint.
     constexpr double smallest_coverage = 2e-2;
     /// Entries of the slave part below this are round-off of the biorthogonality.
@@ -209,9 +210,9 @@ namespace Nodus
             areas[k][i] += area[i];
         });
     for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
-      cover_[k] = areas[k][0] >= well_covered * areas[k][1] ? Cover::well
-                  : areas[k][0] > 0.                        ? Cover::shared_out
-                                                            : Cover::little;
+      cover_[k] = areas[k][0] >= (constrained_[k] ? still_covered : well_covered) * areas[k][1] ? Cover::well
+                  : areas[k][0] > 0.                                                            ? Cover::shared_out
+                                                                                                : Cover::little;
     surfaces.slave_exchange().update(cover_);
     std::vector<unsigned int> alone;
     for_each_area(
@@ -271,6 +272,7 @@ namespace Nodus
   {
     rows_.assign(surfaces.slave_nodes().size(), Row());
     cover_.assign(rows_.size(), Cover::well);
+    constrained_.resize(rows_.size(), false);
     const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(surfaces.layout().communicator);
 
     std::vector<FaceRows> mine;
@@ -300,7 +302,10 @@ namespace Nodus
     for (const FaceRows &face : around)
       add(surfaces, face);
     for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
+    {
       normalise(rows_[k]);
+      constrained_[k] = covered(k);
+    }
 
     std::vector<double> area(rows_.size());
     for (unsigned int k = 0; k < rows_.size(); ++k)

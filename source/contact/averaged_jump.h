@@ -5,6 +5,7 @@
 #include "contact/segments.h"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace Nodus
@@ -43,6 +44,15 @@ namespace Nodus
                  const ContactGeometry                    &geometry,
                  const std::vector<Point>                 &x,
                  const std::vector<Point>                 &X);
+    /// Per owned slave node: it had a constraint of its own when this was computed last, and keeps it longer.
+    void set_constrained(std::vector<char> constrained)
+    {
+      constrained_ = std::move(constrained);
+    }
+    const std::vector<char> &constrained() const
+    {
+      return constrained_;
+    }
 
     /// A fair part of the surface around the slave node has a partner.
     bool covered(const unsigned int slave) const
@@ -103,6 +113,7 @@ namespace Nodus
 
     std::vector<Face>  faces_;
     std::vector<Cover> cover_; ///< per slave node, ghosts too
+    std::vector<char>  constrained_;
     std::vector<Row> rows_; ///< per slave node; area 0 where not covered or of another scheme; of ghosts the area alone
   };
 

@@ -48,6 +48,7 @@ namespace Nodus
   {
     status_.begin_increment();
     pairing_.set_partnered(now_.statuses.contact);
+    averaged_.set_constrained(now_.statuses.contact);
   }
 
   // ---------------------------------------------------------------------------------------------------- geometry pass
@@ -127,6 +128,7 @@ namespace Nodus
   {
     status_.resume();
     pairing_.set_partnered(now_.statuses.contact);
+    averaged_.set_constrained(now_.statuses.contact);
     gather(unknowns, start);
   }
 
@@ -134,6 +136,7 @@ namespace Nodus
   {
     status_.take_laws(other.status_);
     pairing_.set_partnered(other.pairing_.partnered());
+    averaged_.set_constrained(other.averaged_.constrained());
   }
 
   /// Projections, frames, jump operator and surface weights at the current positions.
