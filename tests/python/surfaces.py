@@ -2,6 +2,7 @@
 """Faces that are chosen by their place and normal - planes, directions, cylinders, holes, on curved and refined meshes - against
 their number and area in closed form; the same forces as with ids; the file and the picture of --validate --surfaces."""
 
+import importlib.util
 import os
 import struct
 import subprocess
@@ -158,6 +159,12 @@ def test_file():
         normals = _normals(mesh)
         below("    they look outwards", np.abs(normals.sum(0)).max(), 1e-6)
         below("    volume for 2", abs(np.einsum("nd,nd", normals, mesh.points[mesh.cells].mean((1, 2))) / 3 - 2), 1e-5)
+        if importlib.util.find_spec("meshio"):
+            import meshio
+
+            read = meshio.read("surfaces.vtu")
+            check("    the same as meshio reads it", {name: int(np.concatenate(read.cell_data[name]).sum()) for name in found.names},
+                  {name: int(found.faces[name].sum()) for name in found.names})  # fmt: skip
     case = body_case(CUBE, "nz>0.9")
     case["Boundary condition 2/Where"] = "x<1e-9 && y<1e-9"
     edge = roles(case)
