@@ -69,10 +69,12 @@ def test_cylinders():
     for ranks, degree in ((1, 1), (2, 2)):
         inside = 1 - np.cos(np.pi / 16) if degree == 1 else 1e-4
         places = [f"abs(sqrt(y^2+z^2)-1)<{inside + 1e-3} && abs(nx)<0.5", "nz>cos(45*pi/180)", "abs(nx)<0.5", "nx>0.5",
-                  "ny*y+nz*z>0.5"]
+                  "ny*y+nz*z>0.5",
+                  f"abs(sqrt((x-1)^2+(y-0)^2+(z-0)^2 - ((x-1)*1+(y-0)*0+(z-0)*0)^2) - 1) < {inside + 1e-3} && abs(nx)<0.5"]  # fmt: skip
         side = 2 * 32 * np.sin(np.pi / 16) if degree == 1 else 4 * np.pi
         found = measured(body_case(CYLINDER, *places, degree=degree), ranks)
-        for where, (n, area), exact in zip(places, found, ((128, side), (32, side / 4), (128, side), (80, side / 4), (128, side))):
+        for where, (n, area), exact in zip(places, found, ((128, side), (32, side / 4), (128, side), (80, side / 4), (128, side),
+                                                      (128, side))):
             check(f"cylinder, Q{degree}, {ranks} ranks, {where}, faces", n, exact[0])
             if "nx>" not in where and degree == 1:
                 below(f"    area for {exact[1]:.4f}", abs(area - exact[1]), 1e-5)
@@ -81,6 +83,13 @@ def test_cylinders():
     for where, (n, area), r in zip(places, measured(body_case(tube, *places)), (0.5, 1, 0.5)):
         check(f"tube, {where}, faces", n, 36)
         below(f"    area for {24 * r * np.sin(np.pi / 12):.4f}", abs(area - 24 * r * np.sin(np.pi / 12)), 1e-5)
+
+
+def test_sphere():
+    """A ball of radius 1 with 96 faces, its lower half."""
+    ball = {"Generator": "hyper_ball", "Generator arguments": "0,0,0 : 1 : false", "Global refinement": 2}
+    found = measured(body_case(ball, "abs(sqrt(x^2+y^2+z^2) - 1) < 0.1 && nz < 0", "1"))
+    check("faces", [n for n, _ in found], [48, 96, 96])
 
 
 def test_refined():
@@ -200,4 +209,4 @@ def test_picture():
     check("refused", [done.returncode, "\nsurfaces: " in "\n" + done.stdout, "Traceback" in done.stdout], [1, True, False])
 
 
-run(test_planes_and_normals, test_cylinders, test_refined, test_forces, test_refusals, test_file, test_picture)
+run(test_planes_and_normals, test_cylinders, test_sphere, test_refined, test_forces, test_refusals, test_file, test_picture)
