@@ -24,11 +24,13 @@ namespace
 {
   const char *const usage = R"(nodus: contact of 3D bodies at large deformation, with friction
 
-  nodus case.prm [--set "Section/Key=value"]... [--validate | --check-law | [--restart] [--profile]]
+  nodus case.prm [--set "Section/Key=value"]... [--validate [--surfaces FILE] | --check-law | [--restart] [--profile]]
 
   case.prm                   the parameter file; one that ends in .json is read as JSON
   --set "Section/Key=value"  replaces a value of the file, e.g. --set "Contact pair 1/Friction coefficient=0.3"
   --validate                 reads the case, pairs the surfaces, prints what a run would start from and stops
+  --surfaces FILE.vtu        and writes the outer faces and what the case makes of them: contact sides, boundary conditions
+                             (contrib/plot/surfaces draws them)
   --restart                  continues from the last complete checkpoint in the results folder, on any number of processes
   --check-law                compares the laws of the case with what follows from them, stresses with energies and
                              tangents with differences, prints the largest errors and stops; exit code 1 above 1e-6
@@ -51,6 +53,7 @@ namespace
     bool                     validate = false, check_law = false, restart = false, profile = false;
     std::string              print;   ///< --document, --document-json, --explain, --version or --help
     std::string              explain; ///< the key
+    std::string              surfaces;
   };
 
   CommandLine parse(const std::vector<std::string> &arguments)
@@ -70,6 +73,12 @@ namespace
       }
       else if (argument == "--validate")
         command.validate = true;
+      else if (argument == "--surfaces")
+      {
+        if (++i == arguments.size())
+          throw Nodus::InputError("--surfaces needs the name of a .vtu file after it");
+        command.surfaces = arguments[i];
+      }
       else if (argument == "--check-law")
         command.check_law = true;
       else if (argument == "--restart")
@@ -92,6 +101,8 @@ namespace
     }
     if (command.file.empty() && command.print.empty())
       throw Nodus::InputError("no parameter file; see nodus --help");
+    if (!command.surfaces.empty() && !command.validate)
+      throw Nodus::InputError("--surfaces writes what --validate looks at; add --validate");
     if ((command.validate || command.check_law) && (command.profile || command.restart))
       throw Nodus::InputError(std::string(command.profile ? "--profile" : "--restart") + " needs a run; leave out " +
                               (command.validate ? "--validate" : "--check-law"));
@@ -168,7 +179,7 @@ namespace
       if (command.restart)
         problem.restart();
       if (command.validate)
-        problem.validate();
+        problem.validate(command.surfaces);
       else
         problem.run();
     }

@@ -174,7 +174,7 @@ namespace Nodus
         RegionParameters where    = parameters_[n].region;
         if (on_cells)
           where = {where.bodies, {}, where.where};
-        Load load{&parameters_[n], label(n), Region(where, bodies_, label(n)), functions_[n].get()};
+        Load load{&parameters_[n], label(n), Region(where, bodies_, label(n), on_cells), functions_[n].get()};
         for (const auto &cell : dof_handler_.active_cell_iterators())
           if (cell->is_locally_owned())
           {
@@ -247,10 +247,10 @@ namespace Nodus
         if (!stage.acts[n])
           continue;
         const Region region(parameters_[n].region, bodies_, label(n));
-        const auto   take = [&](const CellIterator &cell, const unsigned int a)
+        const auto   take = [&](const CellIterator &cell, const unsigned int a, const Vector3 &normal)
         {
           const Point X = mapping_.transform_unit_to_real_cell(cell, scalar_fe.unit_support_point(a));
-          if (!region.contains_point(X))
+          if (!region.contains_point(X, normal))
             return;
           ++found[n];
           for (unsigned int e = 0; e < parameters_[n].components.size(); ++e)
@@ -268,12 +268,12 @@ namespace Nodus
             cell->get_dof_indices(dofs);
             for (unsigned int a = 0; a < scalar_fe.n_dofs_per_cell(); ++a)
               if (whole_body && parameters_[n].region.has_body(cell->material_id() + 1))
-                take(cell, a);
+                take(cell, a, Vector3());
             for (const auto face : cell->face_indices())
               if (!whole_body && region.contains_face(cell, face))
                 for (unsigned int a = 0; a < scalar_fe.n_dofs_per_cell(); ++a)
                   if (scalar_fe.has_support_on_face(a, face))
-                    take(cell, a);
+                    take(cell, a, region.normal(mapping_, cell, face));
           }
         for (const auto &[dof, where] : held)
           if (where.condition == n)

@@ -4,6 +4,8 @@
 #include "parameters/expression.h"
 #include "parameters/physical_names.h"
 
+#include <deal.II/fe/mapping_q1.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -17,22 +19,26 @@ namespace Nodus
     std::unique_ptr<dealii::FunctionParser<dim>> parse_predicate(const std::string &expression,
                                                                  const std::string &context)
     {
-      const std::string complaint = expression_complaint(expression, "x,y,z");
+      const std::string complaint = expression_complaint(expression, variables_of_faces);
       if (!complaint.empty())
         throw InputError(context + ": 'Where' = " + expression + " cannot be evaluated (" + complaint +
-                         "); write a condition on x, y, z such as abs(x) < 1e-9 && z > 0.5");
+                         "); write a condition on x, y, z and the normal nx, ny, nz such as abs(x) < 1e-9 && nz > 0.5");
       return parse_expression(expression);
     }
   } // namespace
 
-  Region::Region(const RegionParameters &parameters, const Bodies &bodies, const std::string &context)
+  Region::Region(const RegionParameters &parameters,
+                 const Bodies           &bodies,
+                 const std::string      &context,
+                 const bool              of_cells)
       : parameters_(parameters)
+      , asks_for_normal_(!of_cells && has_normal(parameters.where))
   {
     refuse_absent(bodies, context);
     if (parameters.where.find_first_not_of(" \t") != std::string::npos)
     {
       predicate_ = parse_predicate(parameters.where, context);
-      refuse_undefined(bodies, context);
+      refuse_undefined(bodies, context, of_cells);
     }
   }
 
@@ -84,43 +90,66 @@ namespace Nodus
     }
   }
 
-  void Region::refuse_undefined(const Bodies &bodies, const std::string &context) const
+  void Region::refuse_undefined(const Bodies &bodies, const std::string &context, const bool of_cells) const
   {
     std::string problem;
-    const auto  test = [&](const Point &X)
+    const auto  test = [&](const Point &X, const Vector3 &normal)
     {
-      const double value = predicate_->value(X);
+      const double value = value_at(X, normal);
       if (std::isfinite(value) || !problem.empty())
         return;
       std::ostringstream text;
-      text << context << ": 'Where' = '" << parameters_.where << "' is " << no_number(value) << " at (" << X
-           << "); write a condition that is true or false everywhere";
+      text << context << ": 'Where' = '" << parameters_.where << "' is " << no_number(value) << " at (" << X << ")";
+      if (asks_for_normal_)
+        text << " with the normal (" << normal << ")";
+      text << "; write a condition that is true or false everywhere";
       problem = text.str();
     };
-    const auto test_all = [&](const auto &part)
+    const auto test_all = [&](const auto &part, const Vector3 &normal)
     {
       for (const auto v : part->vertex_indices())
-        test(part->vertex(v));
-      test(part->center());
+        test(part->vertex(v), normal);
+      test(part->center(), normal);
     };
+    const dealii::MappingQ1<dim> straight;
     for (const auto &cell : bodies.triangulation().active_cell_iterators())
-      if (cell->is_locally_owned() && !parameters_.has_ids() && contains_cell(cell))
-        test_all(cell);
-      else if (cell->is_locally_owned())
+      if (cell->is_locally_owned() && of_cells && contains_cell(cell))
+        test_all(cell, Vector3());
+      else if (cell->is_locally_owned() && !of_cells)
         for (const auto f : cell->face_indices())
           if (contains_face(cell, f))
-            test_all(cell->face(f));
+            test_all(cell->face(f), normal(straight, cell, f));
     throw_everywhere<InputError>(problem, communicator_of(bodies.triangulation()));
   }
 
   Region::~Region()                  = default;
   Region::Region(Region &&) noexcept = default;
 
-  bool Region::contains_point(const Point &X) const
+  Vector3 Region::outward_normal(const unsigned int face, const Vector3 &a, const Vector3 &b)
+  {
+    constexpr double digits = 1e12; // without round-off nz == 1 is what it looks like, and -0 is 0
+    Vector3          normal = cross_product_3d(a, b);
+    normal *= (face % 2 == 1 ? 1. : -1.) / normal.norm();
+    for (unsigned int c = 0; c < dim; ++c)
+      normal[c] = std::round(normal[c] * digits) / digits + 0.;
+    return normal;
+  }
+
+  double Region::value_at(const Point &X, const Vector3 &normal) const
+  {
+    if (asks_for_normal_ && normal != normal_of_predicate_)
+    {
+      predicate_           = parse_expression(parameters_.where, normal);
+      normal_of_predicate_ = normal;
+    }
+    return predicate_->value(X);
+  }
+
+  bool Region::contains_point(const Point &X, const Vector3 &normal) const
   {
     if (!predicate_)
       return true;
-    const double value = predicate_->value(X);
+    const double value = value_at(X, normal);
     AssertThrow(std::isfinite(value), dealii::ExcMessage("a 'Where' is not a number at a node"));
     return value != 0.;
   }

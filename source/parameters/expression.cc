@@ -70,7 +70,7 @@ namespace Nodus
       {
         dealii::FunctionParser<dim> function(1);
         std::string                 taken = variables;
-        if (std::count(taken.begin(), taken.end(), ',') > dim) // deal.II takes four: the fifth is a constant
+        while (std::count(taken.begin(), taken.end(), ',') > dim) // deal.II takes four: the others are constants
         {
           constants[taken.substr(taken.rfind(',') + 1)] = 0.5;
           taken.resize(taken.rfind(','));
@@ -106,10 +106,16 @@ namespace Nodus
     return text.str();
   }
 
-  std::unique_ptr<dealii::FunctionParser<dim>> parse_expression(const std::string &expression)
+  bool has_normal(const std::string &expression)
+  {
+    return std::regex_search(expression, std::regex(R"((^|[^A-Za-z0-9_.])n[xyz]($|[^A-Za-z0-9_]))"));
+  }
+
+  std::unique_ptr<dealii::FunctionParser<dim>> parse_expression(const std::string &expression, const Vector3 &normal)
   {
     auto function = std::make_unique<dealii::FunctionParser<dim>>(1);
-    function->initialize("x,y,z", expression, {{"pi", dealii::numbers::PI}});
+    function->initialize(
+        "x,y,z", expression, {{"pi", dealii::numbers::PI}, {"nx", normal[0]}, {"ny", normal[1]}, {"nz", normal[2]}});
     return function;
   }
 } // namespace Nodus

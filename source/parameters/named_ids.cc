@@ -307,6 +307,8 @@ namespace Nodus
     const auto has = [id](const auto &ids) { return std::find(ids.begin(), ids.end(), id) != ids.end(); };
     if (!has_body(of_body))
       return false;
+    if (!has_ids())
+      return !where.empty();
     const auto own = ids_of_body.find(of_body);
     return has(boundary_ids) || (own != ids_of_body.end() && has(own->second));
   }

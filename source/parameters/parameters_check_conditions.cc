@@ -115,10 +115,14 @@ namespace Nodus
     using Type = BoundaryConditionParameters::Type;
     check(section, condition.region, "", n_bodies, 0);
     const bool on_boundary = condition.type != Type::body_force;
-    section.require(condition.region.has_ids() == on_boundary,
+    section.require(on_boundary ? condition.region.chooses_faces() : !condition.region.has_ids(),
                     "Boundary ids",
-                    on_boundary ? "is missing; give the ids or names of the faces the condition acts on"
-                                : "has no meaning for a body force; remove it");
+                    on_boundary
+                        ? "is missing; give the ids or names of the faces the condition acts on, or 'Where' they are"
+                        : "has no meaning for a body force; remove it");
+    section.require(on_boundary || !has_normal(condition.region.where),
+                    "Where",
+                    "asks for a normal, which the cells that a body force acts on do not have; use x, y, z");
 
     const bool directed = condition.type != Type::pressure;
     section.require(condition.components.empty() != directed,

@@ -50,7 +50,7 @@ namespace Nodus
                       "has ids of body " + std::to_string(body) + ", which is not in '" + prefixed(prefix, "Body") +
                           "'");
     if (!region.where.empty())
-      check_expression(section, prefixed(prefix, "Where"), region.where, "x,y,z");
+      check_expression(section, prefixed(prefix, "Where"), region.where, variables_of_faces);
   }
 
   void ParameterChecks::check(const Section                    &section,
@@ -106,6 +106,8 @@ namespace Nodus
     {
       const auto in_b = [&](const dealii::types::boundary_id id) { return b.takes(body, id); };
       const auto own  = a.ids_of_body.find(body);
+      if (!a.has_ids() && b.has_body(body))
+        return true;
       if (std::any_of(a.boundary_ids.begin(), a.boundary_ids.end(), in_b) ||
           (own != a.ids_of_body.end() && std::any_of(own->second.begin(), own->second.end(), in_b)))
         return true;
@@ -264,9 +266,9 @@ namespace Nodus
       if (!pair.has_rigid_master())
       {
         check(section, pair.master, "Master ", n_bodies, 1);
-        section.require(pair.master.has_ids(),
+        section.require(pair.master.chooses_faces(),
                         "Master boundary ids",
-                        "is missing; give the boundary ids or names of the faces in contact");
+                        "is missing; give the boundary ids or names of the faces in contact, or 'Where' they are");
         section.require(!share_faces(pair.slave, pair.master),
                         "Master boundary ids",
                         "names faces that are slaves of the same pair; give the two sides different bodies or ids");
@@ -314,9 +316,9 @@ namespace Nodus
                     "Adjustment distance",
                     "has no effect; set 'Initial overclosure = strain-free adjust', or remove it");
     check(section, pair.slave, "Slave ", n_bodies, 1);
-    section.require(pair.slave.has_ids(),
+    section.require(pair.slave.chooses_faces(),
                     "Slave boundary ids",
-                    "is missing; give the boundary ids or names of the faces in contact");
+                    "is missing; give the boundary ids or names of the faces in contact, or 'Where' they are");
     check_master(section, pair, n_bodies);
 
     using Scheme = ContactPairParameters::Scheme;

@@ -101,11 +101,12 @@ namespace Nodus
         region.boundary_names,
         "Boundary ids of its faces [-], or names of physical surfaces of its mesh file, e.g. 1, 5 or seal_outer, 5. Of "
         "several bodies each has those of them that it has; an id of one body only is written with its number or Name, "
-        "e.g. 2:5 or lid:inner.");
+        "e.g. 2:5 or lid:inner. Empty: all outer faces for which 'Where' holds.");
     prm.add_parameter(prefixed(prefix, "Where"),
                       region.where,
-                      "Condition on the reference coordinates x, y, z [length] that thins the faces out, e.g. "
-                      "abs(x)<1e-9; empty: no condition. " +
+                      "Condition that thins the faces out, or chooses them where no ids are given, on the reference "
+                      "coordinates x, y, z [length] and the outward normal nx, ny, nz [-] at the centre of the face, "
+                      "e.g. abs(x)<1e-9 or nz>0.9 (see meshes.md); empty: no condition. " +
                           where,
                       Patterns::Anything());
   }

@@ -1,5 +1,6 @@
 #include "base/complete_file.h"
 #include "output/results_folder.h"
+#include "output/surface_map.h"
 #include "parallel/throw_everywhere.h"
 #include "run/load_path.h"
 #include "run/validation.h"
@@ -41,7 +42,7 @@ namespace Nodus
 
     void        run();
     void        begin(std::optional<ResultsFolder> &folder);
-    void        validate();
+    void        validate(const std::string &surfaces);
     void        report_remedies();
     void        report_verdicts();
     void        report_energies();
@@ -222,11 +223,16 @@ namespace Nodus
     return file.finish();
   }
 
-  void ContactProblem::Implementation::validate()
+  void ContactProblem::Implementation::validate(const std::string &surfaces)
   {
     for (const std::string &line : model.summary())
       journal.console.line(line);
     results.find_points();
+    if (!surfaces.empty()) // first: who is told that bodies overlap wants to see them
+    {
+      write_surfaces(surfaces, parameters, model.bodies, model.dof_handler, *model.mapping);
+      journal.console.line("  surfaces: " + surfaces);
+    }
     Nodus::validate(model, states, path.at_hand(), journal.console);
   }
 
@@ -253,9 +259,9 @@ namespace Nodus
     implementation_->restart = true;
   }
 
-  void ContactProblem::validate()
+  void ContactProblem::validate(const std::string &surfaces)
   {
-    implementation_->validate();
+    implementation_->validate(surfaces);
   }
 
   const std::vector<ContactFields> &ContactProblem::contact_fields() const

@@ -58,7 +58,7 @@ namespace Nodus
       const auto               &fe      = dof_handler.get_fe();
       const auto               &scalar  = fe.base_element(0);
       const bool                on_cell = condition.type == Type::body_force;
-      const Region              region(condition.region, bodies, condition.name);
+      const Region              region(condition.region, bodies, condition.name, on_cell);
       dealii::FEValues<dim>     cell_values(mapping, fe, dealii::QGauss<dim>(fe.degree + 1), dealii::update_JxW_values);
       dealii::FEFaceValues<dim> face_values(
           mapping, fe, dealii::QGauss<dim - 1>(fe.degree + 1), dealii::update_JxW_values);
@@ -69,13 +69,14 @@ namespace Nodus
       // Nodes of own cells' neighbours may be own ones, too: ghost cells count for nodes.
       const auto take_nodes = [&](const auto &cell, const unsigned int face)
       {
-        bool all = true;
+        bool          all    = true;
+        const Vector3 normal = region.normal(mapping, cell, face);
         cell->get_dof_indices(dofs);
         for (unsigned int a = 0; a < scalar.n_dofs_per_cell(); ++a)
           if (scalar.has_support_on_face(a, face))
           {
             const DoFIndex dof = dofs[fe.component_to_system_index(0, a)];
-            if (!region.contains_point(mapping.transform_unit_to_real_cell(cell, scalar.unit_support_point(a))))
+            if (!region.contains_point(mapping.transform_unit_to_real_cell(cell, scalar.unit_support_point(a)), normal))
               all = false;
             else if (dof_handler.locally_owned_dofs().is_element(dof))
               nodes.insert(dof);

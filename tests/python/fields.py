@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Fields of the VTU files against closed forms, of one and two ranks and of both degrees; their points in both configurations; cells
-as meshio reads them, if it is installed, and VTK."""
+as meshio, VTK and pyvista read them, as far as they are installed."""
 
 import importlib.util
 import os
@@ -309,5 +309,66 @@ def with_vtk(raw, F):
     below("VTK, warped and deformed", np.abs(points["undeformed"] - points["deformed"]).max(), 1e-6)
 
 
+class Vtk:
+    """What VTK reads of a file, and where its points are, warped by the displacement."""
+
+    name, module = "VTK", "vtkmodules"
+
+    def __init__(self, file):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkCommonDataModel import vtkDataObject
+        from vtkmodules.vtkFiltersGeneral import vtkWarpVector
+        from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
+
+        reader = vtkXMLPUnstructuredGridReader() if file.endswith(".pvtu") else vtkXMLUnstructuredGridReader()
+        reader.SetFileName(file)
+        warp = vtkWarpVector()
+        warp.SetInputConnection(reader.GetOutputPort())
+        warp.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, "displacement")
+        warp.Update()
+        grid, values = reader.GetOutput(), reader.GetOutput().GetPointData()
+        self.points, self.warped = (vtk_to_numpy(one.GetPoints().GetData()) for one in (grid, warp.GetOutput()))
+        self.n_cells, self.names = grid.GetNumberOfCells(), {values.GetArrayName(i) for i in range(values.GetNumberOfArrays())}
+
+
+class Pyvista:
+    """The same by pyvista, which Debian 12 does not have: `pip install pyvista`, 600 MB."""
+
+    name = module = "pyvista"
+
+    def __init__(self, file):
+        import pyvista
+
+        mesh = pyvista.read(file)
+        self.points, self.warped = mesh.points, mesh.warp_by_vector("displacement").points
+        self.n_cells, self.names = mesh.n_cells, set(mesh.point_data.keys())
+
+
+def test_other_readers():
+    """VTK and pyvista, if they are installed, read every file of fields, of any number of ranks; what they warp is what is written
+    deformed."""
+    readers = [reader for reader in (Vtk, Pyvista) if importlib.util.find_spec(reader.module)]
+    print("installed:", ", ".join(reader.name for reader in readers))
+    F = np.array([[1.2, 0.5, 0.], [0., 1., 0.1], [0., 0., 1.]])
+    for degree, ranks in ((1, 1), (2, 1), (1, 2), (2, 3)) if readers else ():
+        for what, make, series in (("cube", lambda **output: cube(F, **output), ["bodies"]), ("patch", patch, ["bodies", "contact"])):
+            pair = []
+            for kind in ("undeformed", "deformed"):
+                case = make(Configuration=kind, Fields="all")
+                case["Discretization/Degree"] = degree
+                pair.append(case.run(f"results/{what}_{kind}", ranks))
+            for reader, name in ((reader, name) for reader in readers for name in series):
+                title = f"{reader.name}, Q{degree}, {ranks} ranks, {what}, {name}"
+                for t, file in pair[0].series(name).items():
+                    file, deformed, ours = reader(file), reader(pair[1].series(name)[t]), pair[0].mesh(name, t)
+                    read = file.n_cells, file.names, bool(t == 0 or np.abs(file.warped - file.points).max() > 1e-3)
+                    if read != (len(ours.cells), set(ours.fields), True):
+                        check(f"{title}, t = {t:g}, cells, fields, it moves", read, (len(ours.cells), set(ours.fields), True))
+                    if not np.abs(file.warped - ours.points).max() < 1e-6:
+                        check(f"{title}, t = {t:g}, warped points", "elsewhere", "where they are as read here")
+                below(f"{title}, {len(pair[0].series(name))} files, warped and deformed",
+                      np.abs(file.warped - deformed.points).max(), 1e-6)
+
+
 run(test_strains, test_principal_stresses, test_jump, test_contact, test_choice, test_configurations, test_points,
-    test_folder_again)
+    test_folder_again, test_other_readers)

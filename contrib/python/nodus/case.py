@@ -243,6 +243,20 @@ class Case(Section):
             except InputError as error:
                 raise InputError(re.sub(re.escape(path) + r"(:\d+)?: ", "", str(error))) from None
 
+    def plot_surfaces(self, ranks=1):
+        """A figure of what the case makes of the surfaces of its bodies: sides of contact pairs, boundary conditions.
+        @throws InputError"""
+        from .surfaces import picture  # needs matplotlib
+
+        with tempfile.TemporaryDirectory() as folder:
+            path, file = self.write(os.path.join(folder, "case.prm")), os.path.join(folder, "surfaces.vtu")
+            try:
+                self.program.validate(path, ranks, surfaces=file)
+            except InputError as error:
+                if not os.path.exists(file):  # bodies that overlap are drawn
+                    raise InputError(re.sub(re.escape(path) + r"(:\d+)?: ", "", str(error))) from None
+            return picture(file, self.get("Title", ""))
+
     def run(self, folder=None, ranks=1, **options):
         """Runs the case, on several ranks by mpirun, with results in a folder (by default that of `Output/Results folder`)
         and the case beside it in <folder>.prm. options: see Program.run(). Returns a Run, which is Results. @throws InputError

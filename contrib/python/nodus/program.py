@@ -90,9 +90,11 @@ class Program:
         too_many = ranks > len(os.sched_getaffinity(0))
         return ["mpirun", "-n", str(ranks)] + ["--oversubscribe"] * too_many + command
 
-    def validate(self, file, ranks=1, sets=None):
-        """What a run of a file would start from. @throws InputError"""
-        done = subprocess.run(self._command(file, ranks, None, ["--validate"], sets), stdout=subprocess.PIPE,
+    def validate(self, file, ranks=1, sets=None, surfaces=None):
+        """What a run of a file would start from; surfaces: a .vtu file to be written, for `nodus.surfaces.picture`.
+        @throws InputError"""
+        arguments = ["--validate"] + (["--surfaces", os.fspath(surfaces)] if surfaces else [])
+        done = subprocess.run(self._command(file, ranks, None, arguments, sets), stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, check=False, env=environment())
         if done.returncode != 0:
             raise InputError(_message(done.stdout))

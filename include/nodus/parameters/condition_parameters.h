@@ -16,9 +16,9 @@ namespace Nodus
   /// A part of the boundary: faces of some bodies (or of all) with the given boundary ids.
   struct RegionParameters
   {
-    std::vector<unsigned int>               bodies;          ///< by number; empty = every body
-    std::vector<dealii::types::boundary_id> boundary_ids;    ///< of all these bodies
-    std::string                             where;           ///< muParser predicate of x, y, z; empty = everywhere
+    std::vector<unsigned int>               bodies;       ///< by number; empty = every body
+    std::vector<dealii::types::boundary_id> boundary_ids; ///< of all these bodies
+    std::string                             where; ///< muParser predicate of x, y, z, nx, ny, nz; empty = everywhere
     std::vector<std::string>                body_names = {}; ///< which Parameters::read() replaces by numbers
     /// Names of physical surfaces, which Parameters::read() replaces by their ids, unless several bodies are meant ...
     std::vector<std::string> boundary_names = {};
@@ -38,6 +38,11 @@ namespace Nodus
     bool has_ids() const
     {
       return !boundary_ids.empty() || !boundary_names.empty() || !ids_of_body.empty();
+    }
+    /// Whether it says which faces it has: without ids all of the bodies where the predicate holds.
+    bool chooses_faces() const
+    {
+      return has_ids() || !where.empty();
     }
     /// "2, 3", or "0" for every body, as the keys have it.
     std::string body_numbers() const;

@@ -38,8 +38,9 @@ namespace Nodus
     /// begins at t = 0. It throws InputError when the checkpoint is of another model.
     void restart();
 
-    /// Pairs the surfaces in the reference configuration and prints what a run would start from.
-    void validate();
+    /// Pairs the surfaces in the reference configuration and prints what a run would start from. @p surfaces: a VTU
+    /// file for the outer faces and what the case makes of them, or empty. @throws InputError
+    void validate(const std::string &surfaces = "");
 
     /// State of the last converged increment, the same on every rank. Collective: the surfaces are brought together for
     /// whoever asks.

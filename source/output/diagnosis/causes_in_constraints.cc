@@ -46,7 +46,7 @@ namespace Nodus
           const auto takes = [&](const auto id) { return condition.region.takes(body, id); };
           const auto own   = side.ids_of_body.find(body);
           if (condition.region.has_body(body) &&
-              (around || !condition.region.has_ids() ||
+              (around || !condition.region.has_ids() || !side.has_ids() ||
                std::any_of(side.boundary_ids.begin(), side.boundary_ids.end(), takes) ||
                (own != side.ids_of_body.end() && std::any_of(own->second.begin(), own->second.end(), takes))))
             return true;
@@ -66,14 +66,15 @@ namespace Nodus
             for (const RegionParameters *side :
                  {&parameters.contact_pairs[p].slave, &parameters.contact_pairs[p].master})
               if (may_hold(condition, *side, around))
-                cause.changes.push_back({text("Boundary condition ", c + 1, "/Boundary ids"),
-                                         condition.region.ids_text(),
-                                         "another face",
-                                         text("it holds ",
-                                              side == &parameters.contact_pairs[p].slave ? "the slave" : "the master",
-                                              " side of ",
-                                              pair_name(parameters, p),
-                                              ", and one side of the contact must be free")});
+                cause.changes.push_back(
+                    {text("Boundary condition ", c + 1, condition.region.has_ids() ? "/Boundary ids" : "/Where"),
+                     condition.region.has_ids() ? condition.region.ids_text() : condition.region.where,
+                     "another face",
+                     text("it holds ",
+                          side == &parameters.contact_pairs[p].slave ? "the slave" : "the master",
+                          " side of ",
+                          pair_name(parameters, p),
+                          ", and one side of the contact must be free")});
         }
       causes.push_back(cause);
     }
