@@ -330,7 +330,7 @@ namespace
 
     // relative differences of the results: element by element, and of the product with a vector of the assembled matrix
     Vector x(problem.u), y(x), z(x);
-    tangents[2].vmult(y.trilinos_vector()[0], x.trilinos_vector()[0]);
+    tangents[2].vmult(y.begin(), x.begin());
     plain_tangent.vmult(z, x);
     z -= y;
     const double elementwise = largest_difference(elements, plain, problem, *materials[2][0]);
