@@ -17,7 +17,20 @@ namespace Nodus
     /// Covered fraction of a face at which psi starts to turn from the hats to the dual functions. The dual functions
     /// of a quadratic face keep positive integrals down to here.
     constexpr double dual_coverage = 0.75;
-    constexpr double dual_growth   = 1. / (1. - dual_coverage - 1e-8);
+    /// The same, of the areas that its points integrate, at which these turn to those of the whole face.
+    constexpr double exact_coverage = 0.999;
+
+    /// From 0 at @p begin to 1 where all is covered but for round-off.
+    constexpr double round_off = 1e-8;
+    double           grown(const double covered, const double begin)
+    {
+      return std::clamp((covered - begin) / (1. - begin - round_off), 0., 1.);
+    }
+    double growth(const double covered, const double begin)
+    {
+      const double part = grown(covered, begin);
+      return part > 0. && part < 1. ? 1. / (1. - begin - round_off) : 0.;
+    }
     /// A node with this part of its surface covered, or more, gets a constraint of its own, and keeps it down to the
     /// second: an equilibrium in which it goes with it and comes back without is found by no iteration. Where a corner
     /// of the master lies at a node a quarter is covered.
@@ -167,13 +180,22 @@ namespace Nodus
 
   double AveragedJump::Face::dual_part() const
   {
-    return std::clamp((coverage.fraction - dual_coverage) * dual_growth, 0., 1.);
+    return grown(coverage.fraction, dual_coverage);
   }
 
   double AveragedJump::Face::dual_slope() const
   {
-    const double part = dual_part();
-    return part > 0. && part < 1. ? dual_growth : 0.;
+    return growth(coverage.fraction, dual_coverage);
+  }
+
+  double AveragedJump::Face::exact_part() const
+  {
+    return grown(coverage.fraction, exact_coverage);
+  }
+
+  double AveragedJump::Face::exact_slope() const
+  {
+    return growth(coverage.fraction, exact_coverage);
   }
 
   void AveragedJump::find_points(const ContactPairParameters &pair,

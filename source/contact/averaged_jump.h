@@ -85,6 +85,9 @@ namespace Nodus
       /// Part of the dual functions in psi, the rest being hats, and how it changes with the coverage.
       double dual_part() const;
       double dual_slope() const;
+      /// Part of the exact areas of the face in those of its rows (eq. J10), likewise.
+      double exact_part() const;
+      double exact_slope() const;
     };
     /// Finds the points of a face of a pair with the averaged scheme; @p rule: face_rule() of the pair.
     static void find_points(const ContactPairParameters &pair,

@@ -72,6 +72,7 @@ namespace Nodus
       , n_(face_.nodes.size())
       , m_(face_.slaves.size())
       , part_(face.dual_part())
+      , exact_(face.exact_part())
       , counted_(face.coverage.counted)
       , rows_{face.pair, face_.number, {}, {}, {}, {}}
   {
@@ -174,9 +175,9 @@ namespace Nodus
     for (unsigned int a = 0; a < m_; ++a)
     {
       double *const row = rows_.weights.data() + a * n_columns_;
-      if (part_ > 0.)
+      if (exact_ > 0.)
       {
-        const double scale = 1. + part_ * (counted_ * exact[a] / row[n_columns_ - 2] - 1.);
+        const double scale = 1. + exact_ * (counted_ * exact[a] / row[n_columns_ - 2] - 1.);
         for (unsigned int b = 0; b < n_columns_; ++b)
           row[b] *= scale;
         for (unsigned int c = 0; c < FaceRows::n_vectors; ++c)

@@ -63,7 +63,7 @@ namespace Nodus
     void make_dual_functions();
     void add_point(const MortarPoint &point, double weight);
     /// The points on a curved face integrate its shape functions nearly, Gauss points to round-off: nodal areas of
-    /// covered faces are those, times the part that they count with.
+    /// covered faces are those, times the part that they count with (eq. J10).
     void take_exact_areas();
 
     const ContactPairParameters    &pair_;
@@ -76,6 +76,7 @@ namespace Nodus
     const SurfaceFace              &face_;
     const unsigned int              f_, n_, m_; ///< the face, its nodes and slave nodes
     const double                    part_;      ///< of the dual functions in psi
+    const double                    exact_;     ///< part of the exact areas
     const double                    counted_;   ///< part that the points count with, in the mean
     FaceRows                        rows_;
     unsigned int                    n_columns_ = 0;

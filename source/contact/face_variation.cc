@@ -319,7 +319,7 @@ namespace Nodus
   }
 
   /// With C = M^-1 U, U being the integrals with phi, and H those with hats, a row is
-  /// scale (part area C + (1 - part) H), the scale such that dual functions have their exact areas, times the part that
+  /// scale (part area C + (1 - part) H), the scale such that covered faces have their exact areas, times the part that
   /// the points count with.
   void FaceVariation::finish()
   {
@@ -383,9 +383,9 @@ namespace Nodus
           part_ * (total * result_.middleRows(a * n_columns_, n_columns_) + C.row(a).transpose() * d_total) +
           (1. - part_) * hat_.derivative.middleRows(a * n_columns_, n_columns_) +
           face_.dual_slope() * side.transpose() * d_coverage_.fraction;
-      const double S = sum[area()], scale = 1. + part_ * (exact_.value(a, 0) / S - 1.);
-      const Matrix d_scale = face_.dual_slope() * (exact_.value(a, 0) / S - 1.) * d_coverage_.fraction +
-                             part_ / S * (exact_.derivative.row(a) - exact_.value(a, 0) / S * derivative.row(area()));
+      const double S = sum[area()], exact = face_.exact_part(), scale = 1. + exact * (exact_.value(a, 0) / S - 1.);
+      const Matrix d_scale = face_.exact_slope() * (exact_.value(a, 0) / S - 1.) * d_coverage_.fraction +
+                             exact / S * (exact_.derivative.row(a) - exact_.value(a, 0) / S * derivative.row(area()));
       result_.middleRows(a * n_columns_, n_columns_) = scale * derivative + sum.transpose() * d_scale;
       part_weight_.row(a) = scale * (part_ * total * parts.row(a) + (1. - part_) * hat_.parts.row(a));
     }
