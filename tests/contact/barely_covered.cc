@@ -95,7 +95,7 @@ namespace
     check("  friction over pressing force", std::abs(force[0] / force[2]), 0.3, 5e-3);
     check_error("  largest pressure over the mean", largest, 3.);
     check_count("  fallbacks", fallbacks, 0);
-    check_count("  Newton iterations", iterations, 80);
+    check("  at most 80 Newton iterations", iterations <= 80);
   }
 
   Vector3 slide_over_the_end(const Scheme scheme, const std::vector<unsigned int> &ids)
