@@ -15,8 +15,6 @@ namespace Nodus
   {
     /// Master faces looking along the slave's outward normal (cosine above this) are the far side of a body.
     constexpr double far_side_cosine = 0.5;
-    /// Faces of a mesh whose normals make this cosine or less have an edge between them (60 degrees).
-    constexpr double edge_cosine = 0.5;
     /// Face sizes that a point on the rim may be beyond it by round-off.
     constexpr double no_tolerance = 1e-12;
   } // namespace
@@ -27,8 +25,9 @@ namespace Nodus
     decltype(dealii::pack_rtree(std::vector<Leaf>())) leaves;
   };
 
-  MasterSearch::MasterSearch(const SurfaceGeometry &master, const double tolerance)
+  MasterSearch::MasterSearch(const SurfaceGeometry &master, const double tolerance, const bool averages)
       : master_(master)
+      , averages_(averages)
       , tolerance_(std::max(tolerance, no_tolerance))
       , tree_(std::make_unique<Tree>())
       , on_rim_(master.n_faces())
@@ -85,7 +84,7 @@ namespace Nodus
 
   bool MasterSearch::falls_off(const unsigned int f, const unsigned int neighbour) const
   {
-    return centre_normal_[f] * centre_normal_[neighbour] <= edge_cosine &&
+    return averages_ && centre_normal_[f] * centre_normal_[neighbour] <= -SelfContact::averted_cosine &&
            (centre_[neighbour] - centre_[f]) * centre_normal_[f] < 0.;
   }
 
@@ -115,14 +114,15 @@ namespace Nodus
   Projection
   MasterSearch::closest(const Point &p, const Vector3 &slave_normal, const double reach, const double part) const
   {
-    namespace bgi = boost::geometry::index;
-    Closest best{{}, reach * reach};
+    namespace bgi      = boost::geometry::index;
+    const double limit = averages_ ? SelfContact::averted_cosine : far_side_cosine;
+    Closest      best{{}, reach * reach};
     for (auto leaf = tree_->leaves.qbegin(bgi::nearest(p, master_.n_faces() + 1)); leaf != tree_->leaves.qend(); ++leaf)
     {
       if (squared_distance(leaf->first, p) > best.distance)
         break; // boxes come in ascending distance
       Projection at{leaf->second};
-      if (centre_normal_[at.face] * slave_normal > SelfContact::averted_cosine)
+      if (centre_normal_[at.face] * slave_normal > limit)
         continue;
       const double d2 = closest_point(master_, at.face, p, at.xi, at.eta);
       best.take(at, d2, size_[at.face]);
@@ -190,7 +190,8 @@ namespace Nodus
     {
       slave.emplace_back(surfaces.slave_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
       master.emplace_back(surfaces.master_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
-      search.emplace_back(master[p], pairs[p].projection_tolerance);
+      search.emplace_back(
+          master[p], pairs[p].projection_tolerance, pairs[p].scheme == ContactPairParameters::Scheme::averaged);
       self.push_back(pairs[p].self_contact ? std::make_unique<SelfContact>(surfaces, slave[p], master[p], reach[p])
                                            : nullptr);
       rigid.push_back(surfaces.rigid_master(p));

@@ -26,8 +26,10 @@ namespace Nodus
   class MasterSearch
   {
   public:
-    /// @p tolerance: how far points with a partner may be beyond the rim [faces].
-    MasterSearch(const SurfaceGeometry &master, double tolerance);
+    /// @p tolerance: how far points with a partner may be beyond the rim [faces]. Where the scheme @p averages, faces
+    /// that look past a point, which its integrals do not see (facing()), are no partners, and edges between such faces
+    /// are rims.
+    MasterSearch(const SurfaceGeometry &master, double tolerance, bool averages);
     ~MasterSearch();
     MasterSearch(MasterSearch &&) noexcept;
 
@@ -63,6 +65,7 @@ namespace Nodus
 
     struct Tree;
     const SurfaceGeometry            &master_;
+    const bool                        averages_;
     const double                      tolerance_; ///< of the overhang [faces]
     std::unique_ptr<Tree>             tree_;
     std::vector<SurfaceGeometry::Rim> on_rim_;
