@@ -36,8 +36,9 @@ namespace
     for (unsigned int k = 0; k < fields.X.size(); ++k)
       beyond += fields.paired[k] && std::max(std::abs(fields.X[k][0] - 3), std::abs(fields.X[k][1] - 3)) > 2.5;
     check_count("partners a face beyond the rim", beyond, 0);
-    // of 36; the block bulges a little
-    check("contact area", problem.contact_resultants()[0].contact_area, 3.948 * 3.948, 0.005);
+    // of 36; the block bulges a little, and a fixed rule does not cut areas at the rim exactly
+    const double tolerance = integration == Integration::segment ? 0.005 : 0.03;
+    check("contact area", problem.contact_resultants()[0].contact_area, 3.948 * 3.948, tolerance);
     // not a reference, but what the block is pressed with
     const double force = problem.contact_resultants()[0].slave_force[2];
     report("force that carries the block", Numbers::number(force, 4) + (force < -1. ? "" : ": NO"));
