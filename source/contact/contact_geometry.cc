@@ -25,9 +25,9 @@ namespace Nodus
     decltype(dealii::pack_rtree(std::vector<Leaf>())) leaves;
   };
 
-  MasterSearch::MasterSearch(const SurfaceGeometry &master, const double tolerance, const bool averages)
+  MasterSearch::MasterSearch(const SurfaceGeometry &master, const double tolerance, const bool segments)
       : master_(master)
-      , averages_(averages)
+      , segments_(segments)
       , tolerance_(std::max(tolerance, no_tolerance))
       , tree_(std::make_unique<Tree>())
       , on_rim_(master.n_faces())
@@ -84,7 +84,7 @@ namespace Nodus
 
   bool MasterSearch::falls_off(const unsigned int f, const unsigned int neighbour) const
   {
-    return averages_ && centre_normal_[f] * centre_normal_[neighbour] <= -SelfContact::averted_cosine &&
+    return segments_ && centre_normal_[f] * centre_normal_[neighbour] <= -SelfContact::averted_cosine &&
            (centre_[neighbour] - centre_[f]) * centre_normal_[f] < 0.;
   }
 
@@ -115,7 +115,7 @@ namespace Nodus
   MasterSearch::closest(const Point &p, const Vector3 &slave_normal, const double reach, const double part) const
   {
     namespace bgi      = boost::geometry::index;
-    const double limit = averages_ ? SelfContact::averted_cosine : far_side_cosine;
+    const double limit = segments_ ? SelfContact::averted_cosine : far_side_cosine;
     Closest      best{{}, reach * reach};
     for (auto leaf = tree_->leaves.qbegin(bgi::nearest(p, master_.n_faces() + 1)); leaf != tree_->leaves.qend(); ++leaf)
     {
@@ -190,8 +190,10 @@ namespace Nodus
     {
       slave.emplace_back(surfaces.slave_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
       master.emplace_back(surfaces.master_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
-      search.emplace_back(
-          master[p], pairs[p].projection_tolerance, pairs[p].scheme == ContactPairParameters::Scheme::averaged);
+      search.emplace_back(master[p],
+                          pairs[p].projection_tolerance,
+                          pairs[p].scheme == ContactPairParameters::Scheme::averaged &&
+                              pairs[p].integration == ContactPairParameters::Integration::segment);
       self.push_back(pairs[p].self_contact ? std::make_unique<SelfContact>(surfaces, slave[p], master[p], reach[p])
                                            : nullptr);
       rigid.push_back(surfaces.rigid_master(p));

@@ -26,10 +26,10 @@ namespace Nodus
   class MasterSearch
   {
   public:
-    /// @p tolerance: how far points with a partner may be beyond the rim [faces]. Where the scheme @p averages, faces
-    /// that look past a point, which its integrals do not see (facing()), are no partners, and edges between such faces
-    /// are rims.
-    MasterSearch(const SurfaceGeometry &master, double tolerance, bool averages);
+    /// @p tolerance: how far points with a partner may be beyond the rim [faces]. Where jumps are averaged over
+    /// @p segments, which do not see faces that look past them (facing()), these are no partners, and edges between
+    /// such faces are rims.
+    MasterSearch(const SurfaceGeometry &master, double tolerance, bool segments);
     ~MasterSearch();
     MasterSearch(MasterSearch &&) noexcept;
 
@@ -65,7 +65,7 @@ namespace Nodus
 
     struct Tree;
     const SurfaceGeometry            &master_;
-    const bool                        averages_;
+    const bool                        segments_;
     const double                      tolerance_; ///< of the overhang [faces]
     std::unique_ptr<Tree>             tree_;
     std::vector<SurfaceGeometry::Rim> on_rim_;
