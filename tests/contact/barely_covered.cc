@@ -1,7 +1,7 @@
 // Slave nodes of which the rim of the master covers next to nothing share their part out (eq. J9). A block lies on the
 // slave surface with its rim anywhere in the slave faces: uniform pressure passes exactly. It slides over a plate which
 // is the slave: no pressure is far from the mean, and no increment falls back. Without (J9) the pressure at the rim is
-// up to 51 times the mean, and 8 of 11 increments fall back.
+// up to 51 times the mean, and there are 8 fallbacks in 11 increments.
 //
 // A block also slides over the end of a plate, whose side is on the master surface, too: nothing changes by that, and
 // the force is that of what still lies on the plate.
