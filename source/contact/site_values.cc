@@ -6,24 +6,6 @@ namespace Nodus
 {
   namespace
   {
-    /// A nodal field at all sites: filtered and weighted at slave nodes, interpolated at integration points.
-    template <typename Filter>
-    std::vector<double>
-    at_sites(const SurfaceWeights &weights, const unsigned int n_sites, std::vector<double> nodal, const Filter &filter)
-    {
-      std::vector<double> values(n_sites, 0.);
-      for (const ContactPoint &point : weights.points())
-        if (point.site != dealii::numbers::invalid_unsigned_int)
-          for (unsigned int a = 0; a < point.slaves.size(); ++a)
-            values[point.site] += point.shape[a] * nodal[point.slaves[a]];
-      for (unsigned int k = 0; k < nodal.size(); ++k)
-        if (!filter(k))
-          nodal[k] = 0.;
-      const std::vector<double> weighted = weights.weighted(nodal);
-      std::copy(weighted.begin(), weighted.end(), values.begin());
-      return values;
-    }
-
     using Components = std::vector<std::array<double, 2>>;
 
     /// A field of tangent vectors at the slave nodes, at all sites.
@@ -74,7 +56,17 @@ namespace Nodus
                                     const Status              &status,
                                     const std::vector<double> &lambda)
   {
-    auto pressure = at_sites(weights, status.size(), lambda, [&](const unsigned int k) { return status.contact(k); });
+    std::vector<double> pressure(surfaces.n_sites(), 0.), closed(lambda);
+    for (const ContactPoint &point : weights.points())
+      if (point.site != dealii::numbers::invalid_unsigned_int)
+        for (unsigned int a = 0; a < point.slaves.size(); ++a)
+          pressure[point.site] += point.shape[a] * lambda[point.slaves[a]];
+    for (unsigned int k = 0; k < closed.size(); ++k)
+      if (!status.contact(k))
+        closed[k] = 0.;
+    const std::vector<double> mean = weights.weighted(closed);
+    for (unsigned int k = 0; k < mean.size(); ++k)
+      pressure[k] = status.contact(k) ? mean[k] : 0.; // no part of its neighbours' traction acts on an open node
     surfaces.site_exchange().update(pressure);
     return pressure;
   }

@@ -7,9 +7,8 @@
 
 namespace Nodus
 {
-  /// Contact pressure of every site (eq. S1) [pressure]: lambda_bar = (M S lambda)_j / m_j at slave nodes, where an
-  /// open one has its neighbours' share with consistent weights, 0 otherwise; lambda interpolated at integration
-  /// points, open ones too. Collective.
+  /// Contact pressure of every site (eq. S1) [pressure]: lambda_bar = S_j (M S lambda)_j / m_j at slave nodes,
+  /// the force on the node over its area; lambda interpolated at integration points, open ones too. Collective.
   std::vector<double> site_pressure(const ContactSurfaces     &surfaces,
                                     const SurfaceWeights      &weights,
                                     const Status              &status,
