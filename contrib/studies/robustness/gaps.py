@@ -14,6 +14,9 @@ TOLERANCE = 0.05  # Projection tolerance by default [face sizes]; sites that wer
 # Spreads of master nodes that balance moments [areas around a node], as of geometry.fading (section 7): when their own count, and
 # when those around them do not share.
 SPREAD, APART = (1e-5, 1e-6), (1e-2, 1e-4)
+# Covered parts of the surface around a node (J9): from the first one on it does not share its part out; one that has a constraint
+# does not from the second one on.
+WELL_COVERED, STILL_COVERED = 0.2, 0.1
 
 
 class Rows:
@@ -85,9 +88,10 @@ class Pair:
         rows.slave[self.nodes] = True
         return rows
 
-    def compute(self, preferred):
+    def compute(self, preferred, had_partner):
         """Rows of the slave nodes: their own jumps, or averaged ones (J1). preferred (k, 3): normals that decide where two faces
-        are equally near, or where only the history tells whether a node beyond the rim has a closest point."""
+        are equally near, or where only the history tells whether a node beyond the rim has a closest point. had_partner (k,):
+        what decides where only the history tells whether a node shares its part out."""
         rows = self._empty()
         x = self.bodies.x[self.nodes]
         face, xi, eta, over, ties = self.master.closest(x, self.node_normal)
@@ -108,15 +112,15 @@ class Pair:
             return rows
         if self.keys["Scheme"] == "averaged":
             if self.keys.get("Integration", "segment") == "face":
-                self._averaged(rows, self._face_points(False), found, over, choices, preferred)
+                self._averaged(rows, self._face_points(False), found, over, choices, preferred, had_partner)
                 # single precision does not tell on which of two faces a point is
-                rows.others.append(self._averaged(self._empty(), self._face_points(True), found, over, choices, preferred))
+                rows.others.append(self._averaged(self._empty(), self._face_points(True), found, over, choices, preferred, had_partner))
                 return rows
             # hats and warped faces are integrated by no rule exactly: other triangles and a finer rule show how much is left
             overlaps = Segments(self.slave, self.master, self.reach)
-            self._averaged(rows, overlaps.points(0), found, over, choices, preferred)
+            self._averaged(rows, overlaps.points(0), found, over, choices, preferred, had_partner)
             for points in (overlaps.points(1), overlaps.points(0, fine=True)):
-                rows.others.append(self._averaged(self._empty(), points, found, over, choices, preferred))
+                rows.others.append(self._averaged(self._empty(), points, found, over, choices, preferred, had_partner))
             return rows
         rows.paired = found & (over <= TOLERANCE)
         rows.unsure = found & (over > 0.9 * TOLERANCE) & (over <= 2 * TOLERANCE)
@@ -186,8 +190,8 @@ class Pair:
         keep = counts > 0
         return [v[keep] for v in (f, s, t, w * counts, m, a, b)] + [coverage, np.ones_like(coverage)]
 
-    def _averaged(self, rows, points, found, over, choices, preferred):
-        """(J1) to (J4). Nodes that have a closest point themselves take the normal there: one of choices (site, normal)."""
+    def _averaged(self, rows, points, found, over, choices, preferred, had_partner):
+        """(J1) to (J4), (J9), (J10). Nodes that have a closest point themselves take the normal there: one of choices (site, normal)."""
         f, s, t, w, m, a, b, coverage, counted = points
         phi, hat, theirs = shape(self.degree, s, t)[0], geometry.hats(self.degree, s, t), shape(self.degree, a, b)[0]
         n_faces = len(self.faces)
@@ -208,10 +212,13 @@ class Pair:
             area = weight * self.slave.element(np.arange(n_faces), u, v)[:, None]
             exact += area * shape(self.degree, u, v)[0]
             full += area * geometry.hats(self.degree, u, v)
-        scale = 1 + dual_part[:, None] * (counted[:, None] * exact / np.where(sums == 0, 1, sums) - 1)
+        exact_part = np.clip((coverage - 0.999) / 0.001, 0, 1)
+        scale = 1 + exact_part[:, None] * (counted[:, None] * exact / np.where(sums == 0, 1, sums) - 1)
         psi *= scale[f]
         whole = np.zeros(len(self.nodes))
         np.add.at(whole, self.faces, dual_part[:, None] * exact + (1 - dual_part[:, None]) * full)
+        passed, shared = self._share_out(sums * scale, whole, had_partner)
+        psi, hat = (np.einsum("qab,qb->qa", passed[f], v) for v in (psi, hat))
         sites = self.faces[f]  # (q, nn)
         gap = self.slave.at(f, s, t)[0] - self.master.at(m, a, b)[0]
         across = self.slave.normal(f, s, t, True) if self.kind == "slave" else self.normal_of_master(m, a, b)
@@ -222,7 +229,7 @@ class Pair:
         np.add.at(rows.g, (sites[:, :, None], self.slave.faces[f][:, None]), psi[:, :, None] * phi[:, None])
         np.add.at(rows.g, (sites[:, :, None], self.master.faces[m][:, None]), -psi[:, :, None] * theirs[:, None])
         covered, rows.whole = rows.area / whole, whole
-        rows.paired, rows.unsure = covered > 0.02, np.abs(covered - 0.02) < 0.001
+        rows.paired, rows.unsure = (covered > 0.02) & ~shared, np.abs(covered - 0.02) < 0.001
         rows.drop(~rows.paired)
         on = np.where(rows.paired)[0]
         rows.normal[:] = self.node_normal
@@ -249,6 +256,18 @@ class Pair:
         self.add_areas(plain, xi, eta, w)
         rows.area[~rows.paired] = plain[~rows.paired]
         return rows
+
+    def _share_out(self, areas, whole, had_partner):
+        """(J9), areas (faces, nodes) that are covered: parts (faces, nodes, nodes) of the psi of each node of a face that are in the
+        rows of each; and which nodes share theirs out (k,)."""
+        area = np.bincount(self.faces.ravel(), areas.ravel(), len(self.nodes))
+        well = area >= np.where(had_partner, STILL_COVERED, WELL_COVERED) * whole
+        alone = (areas > 0) & ~well[self.faces].any(axis=1)[:, None]
+        shared = (area > 0) & ~well
+        shared[self.faces[alone]] = False
+        takes = well[self.faces] / np.maximum(1, well[self.faces].sum(axis=1))[:, None]
+        kept = np.where(shared[self.faces], 0, 1)[:, :, None] * np.eye(areas.shape[1])
+        return kept + takes[:, :, None] * shared[self.faces][:, None], shared
 
     def slave_size(self):
         """Of the mean slave face in the reference."""

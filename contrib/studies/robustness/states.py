@@ -89,12 +89,12 @@ class State:
             v[name] = np.full((len(pair.nodes),) + surface.fields[name].shape[1:], np.nan)
             v[name][pair.row[node]] = surface.fields[name][points]
         if keys["Scheme"] == "integration point":
-            pair.rows, pair.normal, pair.area = None, pair.compute(v["normal"]).normal, np.zeros(len(pair.nodes))
+            pair.rows, pair.normal, pair.area = None, pair.compute(v["normal"], v["paired"] > 0.5).normal, np.zeros(len(pair.nodes))
             pair.gap_spread, pair.area_spread, pair.normal_spread = np.zeros((3, len(pair.nodes)))
             pair.add_areas(pair.area, *geometry.square_rule(*pair.point_rule()))
             pair.whole = pair.area
         else:
-            pair.rows = pair.compute(v["normal"])
+            pair.rows = pair.compute(v["normal"], v["paired"] > 0.5)
             pair.normal, pair.area = pair.rows.normal, pair.rows.area
             pair.gap_spread, pair.area_spread, pair.normal_spread = pair.rows.spread()
             pair.whole = pair.rows.whole
