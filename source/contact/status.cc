@@ -15,6 +15,8 @@ namespace Nodus
     constexpr double noise = 1e-10;
     /// A merged loop may come back to a visited status vector this often while the iterate still moves.
     constexpr unsigned int tolerated_returns = 3;
+    /// Passes of a status loop that may go by without fewer changes than before.
+    constexpr unsigned int tolerated_passes = 8;
     /// Gap in face sizes up to which a node starts closed.
     constexpr double initial_gap = 1e-6;
     /// Distance in face sizes up to which tied and bilateral pairs start closed.
@@ -161,6 +163,8 @@ namespace Nodus
     frozen_.assign(now_.contact.size(), false);
     merged_  = merged;
     returns_ = 0;
+    fewest_  = dealii::numbers::invalid_unsigned_int;
+    idle_    = 0;
     note_friction();
   }
 
@@ -279,6 +283,12 @@ namespace Nodus
     note_friction(); // of the next system
     if (result.changes > 0)
       find_period(result);
+    idle_   = result.changes < fewest_ ? 0 : idle_ + 1;
+    fewest_ = std::min(fewest_, result.changes);
+    if (!merged_ && idle_ >= tolerated_passes && !regularised_ && can_regularise())
+      result.to_regularised = true;
+    if (result.to_regularised)
+      regularise();
     return result;
   }
 
@@ -312,7 +322,6 @@ namespace Nodus
       update.frozen = dealii::Utilities::MPI::sum(update.frozen, surfaces_.layout().communicator);
     if (update.to_regularised)
     {
-      regularise();
       update.cycles = false;
       returns_      = 0;
     }

@@ -229,9 +229,9 @@ namespace Nodus
     /// Tests every site and changes those that contradict their status (eq. 2, 7, S2); begin_loop() comes first. Where
     /// a status vector comes back, changes would cycle, and no vector may satisfy all sites: those that take part in
     /// the cycle, and in later ones, keep the status that they have; frozen_violation() tells by how much they
-    /// contradict it. A merged loop has no such rule and cycles when vectors come back time and again. Before that,
-    /// sites that share multipliers, whose conditions need not have a common solution, get regularised laws for the
-    /// rest of the attempt: see regularise(). Collective.
+    /// contradict it. A merged loop has no such rule and cycles when vectors come back time and again. Before that, and
+    /// where a loop of its own goes on without fewer changes, sites that share multipliers, whose conditions need not
+    /// have a common solution, get regularised laws for the rest of the attempt: see regularise(). Collective.
     /// @p closing_only: sites that penetrate close, nothing else changes (an iterate whose pressures mean nothing yet).
     Update update(const StatusInput &input, bool closing_only = false);
 
@@ -332,6 +332,8 @@ namespace Nodus
     bool              regularised_ = false; ///< in this attempt at the increment
     bool              hold_        = false;
     unsigned int      returns_     = 0; ///< to a visited vector, in this loop
+    unsigned int      fewest_      = 0; ///< changes in a pass of this loop
+    unsigned int      idle_        = 0; ///< passes since then
   };
 } // namespace Nodus
 

@@ -374,8 +374,8 @@ namespace Nodus
     if (update.to_regularised)
     {
       journal_.count(Remedy::regularised_law);
-      journal_.console.remark("the statuses cycle: from here the laws are regularised (multipliers projected at "
-                              "integration points, weights lumped)");
+      journal_.console.remark("the statuses do not settle: from here the laws are regularised (multipliers projected "
+                              "at integration points, weights lumped)");
       contact.pass_to_regularised_law(states_.now.unknowns, states_.committed.unknowns.block(0));
       ++journal_.counts.fallbacks;
     }
