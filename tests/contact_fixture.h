@@ -55,10 +55,10 @@ struct ContactFixture
     weights.compute(pairs, *surfaces, averaged, x, x);
   }
 
-  Nodus::ContactResidual assemble()
+  Nodus::ContactResidual assemble(const bool linearise_threshold = false)
   {
     surfaces->layout().reinit(system.rhs);
-    return assembler->assemble(state, system);
+    return assembler->assemble(state, system, linearise_threshold);
   }
 
   /// The contact couplings as a dense matrix in flat indices.

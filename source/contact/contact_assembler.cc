@@ -189,7 +189,7 @@ namespace Nodus
 
   ContactResidual ContactAssembler::residual(const ContactState &state) const
   {
-    ContactScatter scatter(surfaces_, jump_, state);
+    ContactScatter scatter(surfaces_, pairing_, jump_, state);
     visit_points(state, false, nullptr, scatter);
     return scatter.finish();
   }
@@ -202,7 +202,7 @@ namespace Nodus
     system.variation.clear();
     system.border.clear();
     system.symmetric = !unsymmetric;
-    ContactScatter scatter(surfaces_, jump_, state);
+    ContactScatter scatter(surfaces_, pairing_, jump_, state);
     visit_points(state, unsymmetric, &system, scatter);
     const ContactResidual result = scatter.finish();
     scatter.fill_rhs(system);
@@ -256,6 +256,12 @@ namespace Nodus
         scatter.add_tangent(*begin, sum, *system);
       if (unsymmetric)
         scatter.add_variation(*begin, sum, variation->slaves(), variation->variation(), *system);
+      if (unsymmetric && law.in_the_mean) // eq. T5: the pressure that the threshold follows depends on the distance
+        scatter.add_distance_variation(*begin,
+                                       sum,
+                                       -status_.threshold_slope(begin->site) * law.normal_augmentation *
+                                           threshold_weight(law, 0),
+                                       *system);
     }
   }
 

@@ -235,7 +235,7 @@ namespace Nodus
 
   std::vector<double> ContactInterface::pressure() const
   {
-    return site_pressure(surfaces_, weights_, status_, state_.lambda);
+    return friction_pressure(surfaces_, pairing_, weights_, status_, assembler_, state_);
   }
 
   StatusInput ContactInterface::status_input() const

@@ -83,7 +83,7 @@ namespace Nodus
     /// unknown of the iteration is linear (theory section 12), unless elastic slip gives Lambda.
     void follow_pressure(double duration, BlockVector &unknowns, const Vector &start);
     void update_slip_rates(double duration);
-    /// Contact pressure of every site (site_values.h).
+    /// Contact pressure of every site, as friction follows it: friction_pressure().
     std::vector<double> pressure() const;
 
     /// Tests and changes the statuses (Status::update).

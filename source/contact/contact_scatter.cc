@@ -15,8 +15,12 @@ namespace Nodus
     using LocalVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, max_unknowns, 1>;
   } // namespace
 
-  ContactScatter::ContactScatter(const ContactSurfaces &surfaces, const JumpOperator &jump, const ContactState &state)
+  ContactScatter::ContactScatter(const ContactSurfaces &surfaces,
+                                 const Pairing         &pairing,
+                                 const JumpOperator    &jump,
+                                 const ContactState    &state)
       : surfaces_(surfaces)
+      , pairing_(pairing)
       , jump_(jump)
       , state_(state)
       , shares_(surfaces.layout().n_rigid > 0 ? surfaces.n_sites() : 0)
@@ -175,6 +179,28 @@ namespace Nodus
         if (half_[i] != 0.)
           add_entry(system.variation, rows_[i], lambda, half_[i], system);
     }
+  }
+
+  void ContactScatter::add_distance_variation(const ContactPoint &point,
+                                              const LawSum       &sum,
+                                              const double        slope,
+                                              LinearSystem       &system) const
+  {
+    LocalVector normal = LocalVector::Zero(sum.n_unknowns());
+    for (unsigned int c = 0; c < dim; ++c)
+      normal(c) = slope * pairing_[point.site].normal[c];
+    find_unknowns(point, sum);
+    half_.assign(rows_.size(), 0.);
+    product_.assign(rows_.size(), 0.);
+    for (const Unknown &u : unknowns_)
+    {
+      half_[u.row] += u.of(sum.by_threshold.data());
+      product_[u.row] += u.of(normal.data());
+    }
+    for (unsigned int i = 0; i < rows_.size(); ++i)
+      for (unsigned int j = 0; j < rows_.size(); ++j)
+        if (const double value = half_[i] * product_[j]; value != 0.)
+          add_entry(system.variation, rows_[i], rows_[j], value, system);
   }
 
   void ContactScatter::add_resultant(std::vector<double> &sum, const RigidShare &share, const Vector3 &force) const

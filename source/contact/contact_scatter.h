@@ -21,7 +21,10 @@ namespace Nodus
   class ContactScatter
   {
   public:
-    ContactScatter(const ContactSurfaces &surfaces, const JumpOperator &jump, const ContactState &state);
+    ContactScatter(const ContactSurfaces &surfaces,
+                   const Pairing         &pairing,
+                   const JumpOperator    &jump,
+                   const ContactState    &state);
 
     /// Adds the weight |mu lambda_s phi| of a point to its slave nodes with friction (eq. Q3).
     void add_friction_weight(const ContactPoint &point, const LawPoint &law);
@@ -40,6 +43,10 @@ namespace Nodus
                        const std::vector<unsigned int> &slaves,
                        const Eigen::MatrixXd           &derivative,
                        LinearSystem                    &system) const;
+
+    /// The same with respect to the distance, of a regularised point whose threshold has the derivative @p slope with
+    /// respect to it [pressure/length] (eq. T5).
+    void add_distance_variation(const ContactPoint &point, const LawSum &sum, double slope, LinearSystem &system) const;
 
     /// The residual of all ranks. Collective.
     ContactResidual finish();
@@ -82,6 +89,7 @@ namespace Nodus
     void add_resultant(std::vector<double> &sum, const RigidShare &share, const Vector3 &force) const;
 
     const ContactSurfaces  &surfaces_;
+    const Pairing          &pairing_;
     const JumpOperator     &jump_;
     const ContactState     &state_;
     std::vector<RigidShare> shares_; ///< of the sites, empty without driven bodies

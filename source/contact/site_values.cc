@@ -71,6 +71,22 @@ namespace Nodus
     return pressure;
   }
 
+  std::vector<double> friction_pressure(const ContactSurfaces  &surfaces,
+                                        const Pairing          &pairing,
+                                        const SurfaceWeights   &weights,
+                                        const Status           &status,
+                                        const ContactAssembler &assembler,
+                                        const ContactState     &state)
+  {
+    std::vector<double> pressure = site_pressure(surfaces, weights, status, state.lambda);
+    for (unsigned int s = 0; s < pressure.size(); ++s)
+      if (status.projected(s))
+        pressure[s] = status.contact(s) && pairing[s].found
+                          ? std::min(0., pressure[s] - status.normal_augmentation(s) * assembler.distance(state, s))
+                          : 0.;
+    return pressure;
+  }
+
   std::vector<double> site_overclosures(const ContactSurfaces     &surfaces,
                                         const Status              &status,
                                         const std::vector<double> &pressure,

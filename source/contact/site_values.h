@@ -14,6 +14,15 @@ namespace Nodus
                                     const Status              &status,
                                     const std::vector<double> &lambda);
 
+  /// The pressure that friction follows: site_pressure(), and at regularised points that which acts (eq. F3), so that
+  /// friction vanishes as they open [pressure]. Collective.
+  std::vector<double> friction_pressure(const ContactSurfaces  &surfaces,
+                                        const Pairing          &pairing,
+                                        const SurfaceWeights   &weights,
+                                        const Status           &status,
+                                        const ContactAssembler &assembler,
+                                        const ContactState     &state);
+
   /// Overclosure that pressure-gap laws give at every site, of the multipliers that the contact law has there, at open
   /// ones that of pressure 0; 0 where contact is hard [length]. @p pressure: as site_pressure() gives it.
   std::vector<double> site_overclosures(const ContactSurfaces     &surfaces,

@@ -108,6 +108,6 @@ def check_points(find, state, pair, row):
     find.compare("law of integration points, beyond round-off", law - blur - mu * bend, tolerance, t, name)
     push = closed * (values - (augmentation * np.where(closed, points.d, 0) if regularised else 0))
     friction = pair.force - (points.weighted * push[:, None]).T @ points.normal
-    limit = np.abs(points.weighted).T @ (closed * mu * np.maximum(-values, 0))
+    limit = np.abs(points.weighted).T @ (mu * np.maximum(-push, 0))
     beyond = (np.linalg.norm(friction, axis=1) - limit) / (pair.area * largest) - blur - mu * bend
     find.compare("friction beyond that of the points", beyond, tolerance, t, name)
