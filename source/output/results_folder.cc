@@ -72,6 +72,9 @@ namespace Nodus
     if (const fs::path checkpoints = fs::path(path) / "checkpoints";
         fs::exists(checkpoints, ignored) && !fs::is_directory(checkpoints, ignored))
       return checkpoints.string() + " is no folder, but checkpoints of the run go there: remove it";
+    for (const auto &entry : fs::directory_iterator(path, ignored))
+      if (entry.is_directory(ignored) && std::regex_match(entry.path().filename().string(), results))
+        return entry.path().string() + " is a folder, but the run writes a file of this name: remove it";
     const fs::path probe = fs::path(path) / ".writable";
     if (!std::ofstream(probe))
       return "cannot write in the results folder " + path;

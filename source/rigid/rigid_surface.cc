@@ -92,6 +92,12 @@ namespace Nodus
     place(motion_.at(end));
   }
 
+  void RigidSurface::check_motion(const double t) const
+  {
+    if (!carrier_)
+      motion_.at(t);
+  }
+
   void RigidSurface::follow_carrier(const std::vector<Point> &x)
   {
     if (!carrier_)

@@ -59,6 +59,8 @@ namespace Nodus
     {
       return carrier_ ? &*carrier_ : nullptr;
     }
+    /// @throws InputError where its motion at time @p t is not a number; a carried surface has none of its own.
+    void check_motion(double t) const;
     /// Moves it with the nodes of what carries it, which are in the array @p x; nothing without that.
     void follow_carrier(const std::vector<Point> &x);
 

@@ -200,6 +200,7 @@ namespace Nodus
                                            "; change it back, or begin without --restart in another Results folder",
                                  model_.communicator);
     path.continue_from(common.path);
+    model_.look_ahead(path.planned_times());
     journal_.tables->continue_from(common.rows);
     if (VtuOutput *const vtu = results_.vtu())
       vtu->continue_from(common.series);

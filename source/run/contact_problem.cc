@@ -85,6 +85,7 @@ namespace Nodus
       equilibrium.begin_on_mesh();
       if (!restart) // what is wrong at once is refused before there is any file
       {
+        model.look_ahead(path.planned_times());
         model.set_conditions(path.at_hand().end);
         const auto pairing_timer = journal.profile.time(Phase::pairing);
         for (const std::string &untied : model.begin_contact(states, 0.))
@@ -228,6 +229,7 @@ namespace Nodus
     for (const std::string &line : model.summary())
       journal.console.line(line);
     results.find_points();
+    model.look_ahead(path.planned_times());
     if (!surfaces.empty()) // first: who is told that bodies overlap wants to see them
     {
       write_surfaces(surfaces, parameters, model.bodies, model.dof_handler, *model.mapping);

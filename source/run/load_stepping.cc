@@ -10,6 +10,8 @@ namespace Nodus
     constexpr unsigned int default_halvings = 6, most_halvings = 20;
     /// Times that differ by less than this fraction of the path are the same.
     constexpr double same_time = 1e-12;
+    /// Increments of an interval that planned_times() tells of, about.
+    constexpr unsigned int most_planned = 32;
   } // namespace
 
   LoadStepping::LoadStepping(const LoadSteppingParameters &parameters)
@@ -64,6 +66,23 @@ namespace Nodus
       return parameters_.interval_ends.back();
     return position == n_ticks_ ? interval_end()
                                 : begin_ + (interval_end() - begin_) * (static_cast<double>(position) / n_ticks_);
+  }
+
+  std::vector<double> LoadStepping::planned_times() const
+  {
+    std::vector<double> times;
+    for (unsigned int i = interval_; i < parameters_.interval_ends.size(); ++i)
+    {
+      if (parameters_.has_arc_length(i))
+        continue;
+      const double       begin = i == 0 ? 0. : parameters_.interval_ends[i - 1], end = parameters_.interval_ends[i];
+      const unsigned int n = parameters_.increments[i], step = std::max(1u, n / most_planned);
+      for (unsigned int k = step; k < n; k += step)
+        if (const double t = begin + (end - begin) * (static_cast<double>(k) / n); t > time())
+          times.push_back(t);
+      times.push_back(end);
+    }
+    return times;
   }
 
   double LoadStepping::smallest() const

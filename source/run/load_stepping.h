@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace Nodus
 {
@@ -121,6 +122,9 @@ namespace Nodus
               time() == interval_begin(),
               parameters_.has_arc_length(interval_)};
     }
+    /// Times of increments to come as the user asks for them, and all ends of intervals; of intervals with very many
+    /// increments some of them, and of those under arc length none.
+    std::vector<double> planned_times() const;
     /// Part of the whole path that is done, 0 to 1.
     double progress() const
     {

@@ -163,6 +163,20 @@ namespace Nodus
     rigid_bodies.set_time(t);
   }
 
+  void Model::look_ahead(const std::vector<double> &times)
+  {
+    const ContactSurfaces &surfaces = contact->surfaces();
+    for (const double t : times)
+    {
+      set_conditions(t);
+      for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
+        if (const RigidSurface *const master = surfaces.rigid_master(p))
+          master->check_motion(t);
+    }
+    if (!times.empty())
+      set_conditions(times.front());
+  }
+
   std::vector<std::string> Model::begin_contact(States &states, const double t)
   {
     const auto &pairs = parameters.contact_pairs;

@@ -35,6 +35,9 @@ namespace Nodus
     /// Prescribed displacements, loads and rigid motions at time @p t. Collective. @throws InputError, on every rank,
     /// where one is not a number.
     void set_conditions(double t);
+    /// Conditions and motions of rigid surfaces at @p times to come, so that what is not a number there is refused
+    /// before the run has come so far; those of the first of them hold afterwards. Collective. @throws InputError
+    void look_ahead(const std::vector<double> &times);
     /// Contact pairs that begin or cease to act at time @p t do so (ContactInterface::begin), in the states that an
     /// increment from there begins with; what held the latter is released like a reaction. Sentences on what of tied
     /// pairs is not tied. Collective. @throws InputError on every rank where the bodies overlap too much, and where

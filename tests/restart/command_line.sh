@@ -69,6 +69,15 @@ exits_with 1 $? "checkpoints is a file"
 grep -q "taken/checkpoints is no folder" taken.message || fail "$(cat taken.message)"
 [ "$(ls taken)" = checkpoints ] || fail "checkpoints is a file: left $(ls taken)"
 
+# A folder where a file is to be written is found before anything is.
+cp -r whole blocked && rm blocked/bodies.pvd && mkdir blocked/bodies.pvd
+before=$(cd blocked && find . -type f -exec cksum {} + | sort)
+run blocked --restart > blocked.log 2> blocked.message
+exits_with 1 $? "bodies.pvd is a folder"
+grep -q "blocked/bodies.pvd is a folder, but the run writes a file of this name: remove it" blocked.message ||
+  fail "$(cat blocked.message)"
+[ "$(cd blocked && find . -type f -exec cksum {} + | sort)" = "$before" ] || fail "bodies.pvd is a folder: files changed"
+
 long=$(printf 'x%.0s' $(seq 300))
 run "$long" > long.log 2> long.message
 exits_with 1 $? "folder name too long"
