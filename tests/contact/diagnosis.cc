@@ -209,6 +209,17 @@ int main(int argc, char **argv)
             "one: "
             "Contact pair 1/Normal = averaged");
 
+  auto mixed                     = p;
+  mixed.contact_pairs[0].scheme  = ContactPairParameters::Scheme::nodal;
+  mixed.contact_pairs[0].weights = ContactPairParameters::Weights::consistent;
+  check("statuses that contradict each other with consistent weights",
+        first_change(mixed, SolverFailure::Kind::status_cycle) ==
+            "statuses change back and forth: Contact pair 1/Weights = nodal quadrature");
+  mixed.contact_pairs[0].scheme = ContactPairParameters::Scheme::integration_point;
+  check("statuses of integration points that contradict each other",
+        first_change(mixed, SolverFailure::Kind::status_cycle) ==
+            "statuses change back and forth: Contact pair 1/Scheme = averaged");
+
   auto twice          = p; // each side is slave of the other one: the same constraints come twice
   twice.bodies[0]     = box("lower", "2,2,1", {0, 0, 0}, {1, 1, 1}, 100, 0.3);
   twice.bodies[1]     = box("upper", "2,2,1", {0, 0, 1}, {1, 1, 2}, 100, 0.3);

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Random contact cases: do they finish, do those that stop say why, and is what they report true?
 
-    random_cases.py [--seed N] [--cases N] [--only N] [--jobs N] [--time-limit S] [--advice]
+    random_cases.py [--seed N] [--cases N] [--only N] [--jobs N] [--time-limit S] [--advice] [--set KEY=VALUE ...]
 
 Writes case_<n>.prm for each, runs it, checks the results with checks.py and prints the table of README.md; details go to
-random_cases.json in the scratch folder (NODUS_STUDIES). NODUS names the program. With --advice, cases that stop are run again with each
-change that their diagnosis.md proposes, one at a time, and these runs are checked, too. The cases are well posed by
+random_cases/results_seed_<seed>.json in the scratch folder (NODUS_STUDIES). NODUS names the program. With --advice, cases that
+stop are run again with each change that their diagnosis.md proposes, one at a time, and these runs are checked, too; what each key
+comes to is the last table. --set makes all of them harder, e.g. --set "Load stepping/Cut back=false". The cases are well posed by
 construction: loads in proportion to the softest body, upper bodies held by prescribed displacements or by springs.
 """
 
@@ -350,8 +351,22 @@ def judged(results, code, facts):
         return {"violations": [f"unreadable results: {error}"] if code == 0 else [], "measured": {}}
 
 
-def try_advice(path, results, time_limit, facts):
-    """What each change that diagnosis.md proposes comes to: the change, and the exit code or "violated"."""
+def with_settings(facts, settings):
+    """facts of a case with these options of the command line, as far as checks look at them."""
+    facts = json.loads(json.dumps(facts))
+    for setting in settings[1::2]:
+        key, value = setting.split("=", 1)
+        if pair := re.fullmatch(r"Contact pair (\d+)/(.*)", key):
+            facts["pairs"][int(pair[1]) - 1][pair[2]] = value
+            if pair[2] == "Friction coefficient":
+                facts["mu"] = float(value)
+        elif key.endswith(" loop/Mode") and value != "newton":
+            facts["loops"] = "some"
+    return facts
+
+
+def try_advice(path, results, time_limit, facts, settings):
+    """What each change that diagnosis.md proposes comes to: the change, and the exit code, or "violated" where it ends well."""
     diagnosis = os.path.join(results, "diagnosis.md")
     if not os.path.exists(diagnosis):
         return []
@@ -360,8 +375,10 @@ def try_advice(path, results, time_limit, facts):
     outcomes = []
     for k, line in enumerate(lines, 1):
         folder = f"{results}_advice_{k}"
-        code, _, _, _ = run(path, folder, 3 * time_limit, shlex.split(line))
-        outcomes.append((line.strip(), "violated" if judged(folder, code, facts)["violations"] else code))
+        changes = settings + shlex.split(line)
+        code, _, _, _ = run(path, folder, 3 * time_limit, changes)
+        violations = judged(folder, code, with_settings(facts, changes))["violations"]
+        outcomes.append((line.strip(), code or ("violated" if violations else 0)))
     return outcomes
 
 
@@ -369,7 +386,8 @@ def run_case(options, n):
     case = RandomCase(options.seed, n)
     path = case.write("random_cases")
     results = path[: -len(".prm")]
-    code, stopped, cpu, text = run(path, results, options.time_limit)
+    settings = [word for setting in options.set for word in ("--set", setting)]
+    code, stopped, cpu, text = run(path, results, options.time_limit, settings)
     row = {"case": n, **case.facts, "exit": code, "cpu": cpu,
            "cut-backs": text.count("the increment is halved"), "fallbacks": text.count(" given up: "),
            "used": remedies_used(text),
@@ -377,8 +395,8 @@ def run_case(options, n):
     row["reason"] = text.strip().splitlines()[-1] if code else ""
     if code:
         row["cause"] = classify(row["reason"], stopped)
-        row["advice"] = try_advice(path, results, options.time_limit, case.facts) if options.advice else []
-    row.update(judged(results, code, case.facts))
+        row["advice"] = try_advice(path, results, options.time_limit, case.facts, settings) if options.advice else []
+    row.update(judged(results, code, with_settings(case.facts, settings)))
     if os.path.exists(os.path.join(results, "convergence.csv")):
         row["iterations"] = int((common.nodus.Results(results).convergence["iteration"] != 0).sum())
     return row
@@ -413,6 +431,14 @@ def summary(rows):
             print(f"| {key} {value} | {len(part)} | {sum(r['exit'] == 0 for r in part)} | "
                   f"{sum(r['cut-backs'] for r in part)} | {sum(r['fallbacks'] for r in part)} | "
                   f"{sum(r.get('iterations', 0) for r in part)} |")  # fmt: skip
+    tried = [(change, outcome) for r in rows for change, outcome in r.get("advice", [])]
+    if tried:
+        outcomes = collections.defaultdict(list)
+        for change, outcome in tried:
+            outcomes[re.sub(r" \d+/", " <n>/", re.search(r'"([^=]*)=', change)[1])].append(outcome)
+        print("\n| advice | tried | finishes | of these beyond a check |\n|---|---|---|---|")
+        for key, found in sorted(outcomes.items(), key=lambda item: -len(item[1])):
+            print(f"| {key} | {len(found)} | {sum(o in (0, 'violated') for o in found)} | {found.count('violated')} |")
 
 
 def main():
@@ -423,6 +449,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--time-limit", type=int, default=60, help="CPU seconds of one case")
     parser.add_argument("--advice", action="store_true", help="try what diagnosis.md proposes")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="of all cases")
     parser.add_argument("--write", action="store_true", help="only write the cases")
     options = parser.parse_args()
     numbers = options.only or range(1, options.cases + 1)

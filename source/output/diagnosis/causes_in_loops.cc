@@ -23,6 +23,24 @@ namespace Nodus
           }
         return values;
       }
+
+      /// Another weight of gaps or slips where statuses are tested.
+      void
+      add_augmentation(const Parameters &parameters, const unsigned int pair, const bool slides, SuspectedCause &cause)
+      {
+        using Pair          = ContactPairParameters;
+        const Pair  &keys   = parameters.contact_pairs[pair];
+        const double factor = slides ? keys.tangential_augmentation_factor : keys.normal_augmentation_factor;
+        // with consistent weights a softer test does not help, a harder one does (contrib/studies/robustness)
+        const bool mixed = !slides && keys.scheme == Pair::Scheme::nodal && keys.weights == Pair::Weights::consistent;
+        cause.changes.push_back(
+            {in_pair(pair, slides ? "Tangential augmentation factor" : "Normal augmentation factor"),
+             text(factor),
+             text(mixed ? 10. * factor : factor / 10.),
+             text("statuses are tested ",
+                  mixed ? "by gaps more than by pressures" : "more softly",
+                  "; the solution does not depend on it")});
+      }
     } // namespace
 
     void add_status_cycle(const Parameters      &parameters,
@@ -81,18 +99,19 @@ namespace Nodus
                                  "raw",
                                  "weighted",
                                  "multipliers of neighbours swing about the pressure, their weighted mean does not"});
-      add_smaller_increments(parameters, history, cause);
+      bool shared = false; // augmentation has helped there where smaller increments have not
       if (pair < parameters.contact_pairs.size())
       {
-        const auto  &p      = parameters.contact_pairs[pair];
-        const bool   slides = friction * 2 > sites.size();
-        const double factor = slides ? p.tangential_augmentation_factor : p.normal_augmentation_factor;
-        cause.changes.push_back(
-            {in_pair(pair, slides ? "Tangential augmentation factor" : "Normal augmentation factor"),
-             text(factor),
-             text(factor / 10.),
-             "statuses are tested more softly; the solution does not depend on it"});
+        const std::size_t before = cause.changes.size();
+        add_own_gaps(parameters, pair, cause);
+        shared = cause.changes.size() > before;
       }
+      if (!shared)
+        add_smaller_increments(parameters, history, cause);
+      if (pair < parameters.contact_pairs.size())
+        add_augmentation(parameters, pair, friction * 2 > sites.size(), cause);
+      if (shared)
+        add_smaller_increments(parameters, history, cause);
       add_newton_mode("Status loop", parameters.status_loop, cause);
       causes.push_back(cause);
     }
@@ -123,6 +142,9 @@ namespace Nodus
                       last,
                       parameters.threshold_loop.tolerance,
                       cause);
+      for (unsigned int p = 0; p < parameters.contact_pairs.size(); ++p)
+        if (parameters.contact_pairs[p].friction_coefficient > 0.)
+          add_own_gaps(parameters, p, cause);
       add_smaller_increments(parameters, history, cause);
       causes.push_back(cause);
     }

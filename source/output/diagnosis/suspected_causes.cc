@@ -95,6 +95,24 @@ namespace Nodus
             {"Newton/Line search", "false", "true", "corrections that increase the residual are shortened"});
     }
 
+    void add_own_gaps(const Parameters &parameters, const unsigned int pair, SuspectedCause &cause)
+    {
+      using Pair       = ContactPairParameters;
+      const Pair &keys = parameters.contact_pairs[pair];
+      if (keys.scheme == Pair::Scheme::integration_point)
+        cause.changes.push_back({in_pair(pair, "Scheme"),
+                                 text_of(keys.scheme),
+                                 "averaged",
+                                 "a node has one gap and one pressure; points of a face share pressures, and what is "
+                                 "right for one may be wrong for its neighbours"});
+      else if (keys.scheme == Pair::Scheme::nodal && keys.weights == Pair::Weights::consistent)
+        cause.changes.push_back({in_pair(pair, "Weights"),
+                                 "consistent",
+                                 "nodal quadrature",
+                                 "a node has a gap of its own; consistent weights mix it with those of its neighbours, "
+                                 "and what is right for one may be wrong for these"});
+    }
+
     void add_newton_mode(const std::string &loop, const LoopParameters &parameters, SuspectedCause &cause)
     {
       if (parameters.mode == Mode::fixed_point)

@@ -28,6 +28,9 @@ namespace Nodus
     /// Smaller increments, in the terms of the user.
     void add_smaller_increments(const Parameters &parameters, const History &history, SuspectedCause &cause);
     void add_line_search(const Parameters &parameters, SuspectedCause &cause);
+    /// Where points of a face share multipliers, or nodes the gaps of their neighbours, statuses may contradict each
+    /// other; they do not where each node has a gap of its own.
+    void add_own_gaps(const Parameters &parameters, const unsigned int pair, SuspectedCause &cause);
     void add_newton_mode(const std::string &loop, const LoopParameters &parameters, SuspectedCause &cause);
     void add_more_passes(const std::string &key,
                          const unsigned int now,
