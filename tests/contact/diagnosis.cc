@@ -195,6 +195,8 @@ int main(int argc, char **argv)
     evidence.kind          = kind;
     evidence.linear_solver = q.linear_solver.type;
     evidence.pairs.resize(1);
+    if (kind == SolverFailure::Kind::inverted_cell) // slave nodes go beyond rims with what is crushed
+      evidence.inverted_cells = evidence.pairs[0].lost = 1;
     const SuspectedCause cause = suspected_causes(q, history, evidence).front();
     return cause.name + ": " + cause.changes.front().key + " = " + cause.changes.front().proposed;
   };
@@ -208,6 +210,10 @@ int main(int argc, char **argv)
             "normals jump between the facets of the master: the geometry loop comes back to the pass before the last "
             "one: "
             "Contact pair 1/Normal = averaged");
+
+  check("a crushed block whose nodes lost the master",
+        first_change(p, SolverFailure::Kind::inverted_cell) ==
+            "cells are turned inside out: Load stepping/Minimum increment = 0.0625");
 
   auto mixed                     = p;
   mixed.contact_pairs[0].scheme  = ContactPairParameters::Scheme::nodal;

@@ -1,12 +1,14 @@
 #!/usr/bin/python3
 """Random contact cases: do they finish, do those that stop say why, and is what they report true?
 
-    random_cases.py [--seed N] [--cases N] [--only N] [--jobs N] [--time-limit S] [--advice] [--set KEY=VALUE ...]
+    random_cases.py [--seed N] [--cases N] [--only N] [--jobs N] [--time-limit S] [--advice]
+                    [--increments N] [--set KEY=VALUE ...]
 
 Writes case_<n>.prm for each, runs it, checks the results with checks.py and prints the table of README.md; details go to
 random_cases/results_seed_<seed>.json in the scratch folder (NODUS_STUDIES). NODUS names the program. With --advice, cases that
 stop are run again with each change that their diagnosis.md proposes, one at a time, and these runs are checked, too; what each key
-comes to is the last table. --set makes all of them harder, e.g. --set "Load stepping/Cut back=false". The cases are well posed by
+comes to is the last table. --increments (of each interval) and --set make all of them harder, e.g. --increments 1
+--set "Load stepping/Cut back=false". The cases are well posed by
 construction: loads in proportion to the softest body, upper bodies held by prescribed displacements or by springs.
 """
 
@@ -375,7 +377,9 @@ def try_advice(path, results, time_limit, facts, settings):
     outcomes = []
     for k, line in enumerate(lines, 1):
         folder = f"{results}_advice_{k}"
-        changes = settings + shlex.split(line)
+        changes = shlex.split(line)
+        keys = {change.split("=", 1)[0] for change in changes[1::2]}  # each may be given once
+        changes += [word for setting in settings[1::2] if setting.split("=", 1)[0] not in keys for word in ("--set", setting)]
         code, _, _, _ = run(path, folder, 3 * time_limit, changes)
         violations = judged(folder, code, with_settings(facts, changes))["violations"]
         outcomes.append((line.strip(), code or ("violated" if violations else 0)))
@@ -384,6 +388,9 @@ def try_advice(path, results, time_limit, facts, settings):
 
 def run_case(options, n):
     case = RandomCase(options.seed, n)
+    if options.increments:
+        stepping = case.tree["Load stepping"]
+        stepping["Increments"] = ", ".join([str(options.increments)] * (stepping["Interval ends"].count(",") + 1))
     path = case.write("random_cases")
     results = path[: -len(".prm")]
     settings = [word for setting in options.set for word in ("--set", setting)]
@@ -449,6 +456,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--time-limit", type=int, default=60, help="CPU seconds of one case")
     parser.add_argument("--advice", action="store_true", help="try what diagnosis.md proposes")
+    parser.add_argument("--increments", type=int, help="of each interval, in the place of random ones")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="of all cases")
     parser.add_argument("--write", action="store_true", help="only write the cases")
     options = parser.parse_args()

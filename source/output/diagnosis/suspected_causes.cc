@@ -366,8 +366,10 @@ namespace Nodus
       add_geometry_loop(parameters, history, evidence, causes);
     if (kind == Kind::linear_solver)
       add_linear_solver(parameters, evidence, causes);
+    if (kind == Kind::inverted_cell)
+      add_distorted_cells(parameters, history, evidence, causes);
     add_partners(parameters, history, evidence, causes);
-    if (kind == Kind::inverted_cell || evidence.worst_cell.det_F < Diagnosis::distorted)
+    if (kind != Kind::inverted_cell && evidence.worst_cell.det_F < Diagnosis::distorted)
       add_distorted_cells(parameters, history, evidence, causes);
     if (!history.threshold_passes.empty())
       add_threshold_loop(parameters, history, causes);
