@@ -172,6 +172,10 @@ namespace Nodus
 
   void ParameterFile::open_section(const std::string &section, const std::string &origin)
   {
+    constexpr int deepest = 20; // each has the names of those around it
+    if (std::count(section.begin(), section.end(), '/') >= deepest)
+      throw InputError(origin + ": more than " + std::to_string(deepest) +
+                       " subsections inside each other; those of nodus are two deep: add the 'end' of each");
     const auto [opened, is_new] = sections_.emplace(section, origin);
     if (!is_new)
       throw InputError(origin + ": subsection '" + section + "' is already at " + opened->second +
