@@ -167,16 +167,31 @@ namespace Nodus
   {
     std::vector<unsigned int> found(parameters_.size(), 0);
     std::string               error;
+    const auto                refuse_driven = [&](const unsigned int n, const unsigned int body)
+    {
+      const Type type = parameters_[n].type;
+      if (driven_[body] && type != Type::traction && type != Type::point_load)
+        error = label(n) + ": a " + text_of(type) + " acts on body " + std::to_string(body + 1) +
+                ", which is rigid with free components; take the body out of the region and use 'Rigid force' and "
+                "'Rigid moment', or a traction";
+    };
     for (unsigned int n = 0; n < parameters_.size(); ++n)
       if (!parameters_[n].holds())
       {
-        const bool       on_cells = parameters_[n].type == Type::body_force;
-        RegionParameters where    = parameters_[n].region;
+        const BoundaryConditionParameters &condition = parameters_[n];
+        const bool                         on_cells  = condition.type == Type::body_force || condition.at_point();
+        RegionParameters                   where     = condition.region;
         if (on_cells)
           where = {where.bodies, {}, where.where};
-        Load load{&parameters_[n], label(n), Region(where, bodies_, label(n), on_cells), functions_[n].get()};
+        Load load{&condition, label(n), Region(where, bodies_, label(n), on_cells), functions_[n].get(), {}};
+        if (condition.at_point())
+        {
+          load.place = locate(bodies_, mapping_, where, load.point(), label(n));
+          found[n]   = 1;
+          refuse_driven(n, load.place->body);
+        }
         for (const auto &cell : dof_handler_.active_cell_iterators())
-          if (cell->is_locally_owned())
+          if (cell->is_locally_owned() && !load.place)
           {
             if (on_cells)
               found[n] += load.region.selects_cell(mapping_, cell);
@@ -185,11 +200,7 @@ namespace Nodus
                 if (load.region.selects_face(mapping_, cell, face))
                 {
                   ++found[n];
-                  if (driven_[cell->material_id()] && parameters_[n].type != Type::traction)
-                    error = label(n) + ": a " + (parameters_[n].type == Type::pressure ? "pressure" : "spring") +
-                            " acts on body " + std::to_string(cell->material_id() + 1) +
-                            ", which is rigid with free components; take the body out of the region and use 'Rigid "
-                            "force' and 'Rigid moment', or a traction";
+                  refuse_driven(n, cell->material_id());
                 }
           }
         loads_.push_back(std::move(load));

@@ -2,6 +2,7 @@
 #define nodus_bulk_boundary_conditions_h
 
 #include "mesh/hanging_nodes.h"
+#include "mesh/point_location.h"
 #include "mesh/region.h"
 #include <nodus/base/types.h>
 #include <nodus/parameters/parameters.h>
@@ -13,6 +14,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,16 +31,23 @@ namespace Nodus
       std::string                        label; ///< for messages
       Region                             region;
       dealii::Function<dim>             *value; ///< time-dependent: set_time(t), then value(X, component)
+      std::optional<PointInCell>         place; ///< of a condition at a point, which has no faces
+      /// The reference position of that.
+      Point point() const
+      {
+        return {parameters->point[0], parameters->point[1], parameters->point[2]};
+      }
     };
 
-    /// @throws InputError, on every rank: bad expression, a region without any node (displacement), face (traction,
-    /// pressure, spring) or cell (body force), two conditions that prescribe different values for the same degree of
-    /// freedom at the start, the middle or the end of the time in which both act. The predicate of a region is
-    /// evaluated at nodes, at the centres of faces and at the centres of cells, respectively; body forces ignore
-    /// boundary ids. @p interval_ends: the times at which conditions may begin or cease to act, and the last of all.
-    /// All nodes of the rigid ones among @p body_parameters (of all bodies, or empty) are prescribed, too, for those
-    /// with free components and for coupled faces as they are (RigidBodies moves them); nothing else may hold these,
-    /// nor springs and pressures act on those bodies. Bodies, degrees of freedom and mapping outlive the conditions.
+    /// @throws InputError, on every rank: bad expression, a point outside of the bodies, a region without any node
+    /// (displacement), face (traction, pressure, spring) or cell (body force), two conditions that prescribe different
+    /// values for the same degree of freedom at the start, the middle or the end of the time in which both act. The
+    /// predicate of a region is evaluated at nodes, at the centres of faces and at the centres of cells, respectively;
+    /// body forces ignore boundary ids. @p interval_ends: the times at which conditions may begin or cease to act, and
+    /// the last of all. All nodes of the rigid ones among @p body_parameters (of all bodies, or empty) are prescribed,
+    /// too, for those with free components and for coupled faces as they are (RigidBodies moves them); nothing else may
+    /// hold these, nor springs and pressures act on those bodies. Bodies, degrees of freedom and mapping outlive the
+    /// conditions.
     BoundaryConditions(const std::vector<BoundaryConditionParameters> &parameters,
                        const Bodies                                   &bodies,
                        const dealii::DoFHandler<dim>                  &dof_handler,

@@ -97,6 +97,9 @@ namespace Nodus
   {
     if (parameters.type == BoundaryConditionParameters::Type::rigid_motion)
       return std::make_unique<RigidDisplacement>(parameters.motion, parameters.components, label);
+    if (parameters.at_point() && parameters.point.size() != dim)
+      throw InputError(label + ": 'Point' has " + std::to_string(parameters.point.size()) +
+                       " numbers; give three, the reference position x, y, z");
     const std::size_t expected =
         parameters.type == BoundaryConditionParameters::Type::pressure ? 1 : parameters.components.size();
     if (parameters.value.size() != expected || expected == 0)

@@ -10,14 +10,33 @@
 
 namespace Nodus
 {
-  /// Shape functions of the nodes of one face of the unit cell, at the Gauss points of that face.
-  struct FaceTable
+  /// Shape functions of some nodes of a cell at some points.
+  struct ShapeTable
   {
     std::vector<unsigned int>        nodes; ///< of the scalar element
+    std::vector<std::vector<double>> value; ///< [point][node]
+  };
+
+  /// Those of all nodes of the unit cell, at one point of it.
+  struct PointTable : ShapeTable
+  {
+    PointTable(const dealii::FiniteElement<dim> &scalar_fe, const Point &point)
+    {
+      value.emplace_back();
+      for (unsigned int a = 0; a < scalar_fe.n_dofs_per_cell(); ++a)
+      {
+        nodes.push_back(a);
+        value.back().push_back(scalar_fe.shape_value(a, point));
+      }
+    }
+  };
+
+  /// Those of the nodes of one face of the unit cell, at the Gauss points of that face.
+  struct FaceTable : ShapeTable
+  {
     std::vector<Point>               points;
     std::vector<double>              weights;
     unsigned int                     direction[2]; ///< unit coordinates of two tangents, right-handed outwards
-    std::vector<std::vector<double>> value;        ///< [point][node of the face]
     std::vector<std::vector<double>> gradient[2];  ///< along the two tangents
 
     FaceTable(const dealii::FiniteElement<dim> &scalar_fe, const unsigned int face)

@@ -25,13 +25,21 @@ namespace Nodus
     using Type         = BoundaryConditionParameters::Type;
     using CellIterator = DoFHandler<dim>::active_cell_iterator;
 
+    /// A face with a load at its Gauss points, or a cell with one at a point in it.
     struct LoadedFace
     {
       Load                    *load;
-      unsigned int             face;
+      const ShapeTable        *shape;    ///< at the points
+      unsigned int             face = 0; ///< where the load is on one
       std::vector<LoadedPoint> points;
       std::vector<double>      values; ///< of the load at its current time: [point][component]
     };
+
+    bool is_spring(const LoadedFace &loaded)
+    {
+      const Type type = loaded.load->parameters->type;
+      return type == Type::spring || type == Type::point_spring;
+    }
 
     struct LoadedCell
     {
@@ -74,6 +82,8 @@ namespace Nodus
     }
 
     void             add_cell(const CellIterator &cell);
+    LoadedFace       on_face(Load &load, const CellIterator &cell, unsigned int face) const;
+    LoadedFace       at_point(Load &load);
     void             evaluate(double t);
     double           value(const Load &load, const Point &X, unsigned int entry);
     void             evaluate_dead_loads(LoadedCell &loaded);
@@ -96,7 +106,8 @@ namespace Nodus
     std::vector<Load>                            &loads;
     FEValues<dim>                                 volume;
     std::vector<FaceTable>                        faces;
-    std::vector<int>                              load_of; ///< per cell: index into loaded_cells or -1
+    std::vector<std::unique_ptr<PointTable>>      point_tables; ///< of the loads at points of these cells
+    std::vector<int>                              load_of;      ///< per cell: index into loaded_cells or -1
     std::vector<LoadedCell>                       loaded_cells;
     double                                        time = std::numeric_limits<double>::quiet_NaN();
     std::string                                   problem; ///< with the values at this time
@@ -114,31 +125,15 @@ namespace Nodus
           found.body_forces.push_back(&load);
         continue;
       }
+      if (load.place)
+      {
+        if (load.place->cell == cell->id())
+          found.faces.push_back(at_point(load));
+        continue;
+      }
       for (const auto face : cell->face_indices())
         if (load.region.selects_face(mapping, cell, face))
-        {
-          const FaceTable &table = faces[face];
-          FEValues<dim>    values(mapping,
-                               dof_handler.get_fe(),
-                               Quadrature<dim>(table.points),
-                               update_quadrature_points | update_jacobians);
-          values.reinit(cell);
-          LoadedFace loaded;
-          loaded.load = &load;
-          loaded.face = face;
-          for (const auto q : values.quadrature_point_indices())
-          {
-            LoadedPoint point;
-            point.X = values.quadrature_point(q);
-            for (unsigned int s = 0; s < 2; ++s)
-              for (unsigned int i = 0; i < dim; ++i)
-                point.tangent[s][i] = values.jacobian(q)[i][table.direction[s]];
-            point.weight = table.weights[q];
-            point.area   = point.weight * cross_product_3d(point.tangent[0], point.tangent[1]).norm();
-            loaded.points.push_back(point);
-          }
-          found.faces.push_back(std::move(loaded));
-        }
+          found.faces.push_back(on_face(load, cell, face));
     }
     load_of.push_back(-1);
     if (!found.body_forces.empty() || !found.faces.empty())
@@ -147,6 +142,34 @@ namespace Nodus
       load_of.back() = loaded_cells.size();
       loaded_cells.push_back(std::move(found));
     }
+  }
+
+  LoadedFace Loads::Implementation::on_face(Load &load, const CellIterator &cell, const unsigned int face) const
+  {
+    const FaceTable &table = faces[face];
+    FEValues<dim>    values(
+        mapping, dof_handler.get_fe(), Quadrature<dim>(table.points), update_quadrature_points | update_jacobians);
+    values.reinit(cell);
+    LoadedFace loaded{&load, &table, face, {}, {}};
+    for (const auto q : values.quadrature_point_indices())
+    {
+      LoadedPoint point;
+      point.X = values.quadrature_point(q);
+      for (unsigned int s = 0; s < 2; ++s)
+        for (unsigned int i = 0; i < dim; ++i)
+          point.tangent[s][i] = values.jacobian(q)[i][table.direction[s]];
+      point.weight = table.weights[q];
+      point.area   = point.weight * cross_product_3d(point.tangent[0], point.tangent[1]).norm();
+      loaded.points.push_back(point);
+    }
+    return loaded;
+  }
+
+  /// The value of the load is that of an area of 1.
+  LoadedFace Loads::Implementation::at_point(Load &load)
+  {
+    point_tables.push_back(std::make_unique<PointTable>(dof_handler.get_fe().base_element(0), load.place->unit));
+    return {&load, point_tables.back().get(), 0, {{load.point(), {}, 1., 1.}}, {}};
   }
 
   void Loads::Implementation::evaluate(const double t)
@@ -198,12 +221,12 @@ namespace Nodus
         }
     for (const auto &face : loaded.faces)
     {
-      const FaceTable &table = faces[face.face];
-      const auto      &load  = *face.load->parameters;
+      const ShapeTable &table = *face.shape;
+      const auto       &load  = *face.load->parameters;
       for (unsigned int q = 0; q < face.points.size(); ++q)
       {
         Vector3 force;
-        if (load.type == Type::traction)
+        if (load.type == Type::traction || load.type == Type::point_load)
           for (unsigned int c = 0; c < load.components.size(); ++c)
             force[load.components[c]] = face.values[q * load.components.size() + c] * face.points[q].area;
         else if (load.type == Type::pressure && material(loaded.cell).small_strain())
@@ -218,8 +241,8 @@ namespace Nodus
 
   void Loads::Implementation::add_springs(const LoadedFace &loaded, const Cell &cell) const
   {
-    const FaceTable &table      = faces[loaded.face];
-    const auto      &components = loaded.load->parameters->components;
+    const ShapeTable &table      = *loaded.shape;
+    const auto       &components = loaded.load->parameters->components;
     for (unsigned int q = 0; q < loaded.points.size(); ++q)
       for (unsigned int c = 0; c < components.size(); ++c)
       {
@@ -256,10 +279,10 @@ namespace Nodus
     double                energy = 0.;
     for (const LoadedFace &loaded : l.loaded_cells[l.load_of[number]].faces)
     {
-      if (loaded.load->parameters->type != Type::spring)
+      if (!is_spring(loaded))
         continue;
-      const FaceTable &table      = l.faces[loaded.face];
-      const auto      &components = loaded.load->parameters->components;
+      const ShapeTable &table      = *loaded.shape;
+      const auto       &components = loaded.load->parameters->components;
       for (unsigned int q = 0; q < loaded.points.size(); ++q)
         for (unsigned int c = 0; c < components.size(); ++c)
         {
@@ -302,7 +325,7 @@ namespace Nodus
     const LoadedCell &loaded = implementation_->loaded_cells[implementation_->load_of[number]];
     cell.external += loaded.dead;
     for (const auto &face : loaded.faces)
-      if (face.load->parameters->type == Type::spring)
+      if (is_spring(face))
         implementation_->add_springs(face, cell);
       else if (implementation_->follows(loaded, face))
         implementation_->follower(face).add(cell.u, cell.external, cell.tangent);

@@ -16,7 +16,7 @@
 
 namespace Nodus
 {
-  /// Body forces, tractions, pressures and springs, cell by cell.
+  /// Body forces, tractions, pressures, springs, and loads and springs at points, cell by cell.
   class Loads
   {
   public:

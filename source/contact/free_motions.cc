@@ -1,6 +1,5 @@
 #include "contact/free_motions.h"
 #include "base/deal_ii_versions.h"
-#include "mesh/region.h"
 #include "mesh/sides.h"
 
 #include <deal.II/base/mpi.h>
@@ -138,19 +137,56 @@ namespace Nodus
         hold(dof);
   }
 
-  void FreeMotions::hold_springs(const std::vector<BoundaryConditionParameters> &conditions, const double time)
+  /// Of a point of a body now: that of the nodes around it. Collective.
+  Point FreeMotions::position(const PointInCell &place) const
   {
-    const auto           &fe     = dof_handler_.get_fe();
-    const auto           &scalar = fe.base_element(0);
+    const auto             &fe    = dof_handler_.get_fe();
+    const dealii::IndexSet &owned = dof_handler_.locally_owned_dofs();
+    const MPI_Comm          ranks = communicator_of(dof_handler_);
+    std::vector<double>     x(dim, 0.);
+    std::vector<DoFIndex>   dofs(fe.n_dofs_per_cell());
+    for (const auto &cell : dof_handler_.active_cell_iterators())
+      if (!cell->is_artificial() && cell->id() == place.cell)
+      {
+        cell->get_dof_indices(dofs);
+        for (unsigned int a = 0; a < fe.base_element(0).n_dofs_per_cell(); ++a)
+          if (const DoFIndex dof = dofs[fe.component_to_system_index(0, a)]; owned.is_element(dof))
+            for (unsigned int c = 0; c < dim; ++c)
+              x[c] += fe.base_element(0).shape_value(a, place.unit) * x_[owned.index_within_set(dof) / dim][c];
+      }
+    dealii::Utilities::MPI::sum(x, ranks, x);
+    return {x[0], x[1], x[2]};
+  }
+
+  void FreeMotions::hold_springs(const std::vector<BoundaryConditions::Load> &loads, const double time)
+  {
+    using Type                       = BoundaryConditionParameters::Type;
+    const auto           &fe         = dof_handler_.get_fe();
+    const auto           &scalar     = fe.base_element(0);
+    const bool            first_rank = dealii::Utilities::MPI::this_mpi_process(communicator_of(dof_handler_)) == 0;
     std::vector<DoFIndex> dofs(fe.n_dofs_per_cell());
-    for (const auto &condition : conditions)
+    for (const auto &load : loads)
     {
-      if (condition.type != BoundaryConditionParameters::Type::spring || !condition.acts(time))
+      const BoundaryConditionParameters &condition = *load.parameters;
+      if (!condition.acts(time))
         continue;
-      const Region region(condition.region, bodies_, condition.name);
+      if (condition.type == Type::point_spring)
+      {
+        const Point x = position(*load.place);
+        for (const unsigned int c : condition.components)
+          if (first_rank)
+          {
+            Vector3 direction;
+            direction[c] = 1.;
+            take(load.place->body, x, direction);
+            hold();
+          }
+      }
+      if (condition.type != Type::spring)
+        continue;
       for (const auto &cell : dof_handler_.active_cell_iterators())
         for (const auto face : cell->face_indices())
-          if (!cell->is_artificial() && region.selects_face(mapping_, cell, face))
+          if (!cell->is_artificial() && load.region.selects_face(mapping_, cell, face))
           {
             cell->get_dof_indices(dofs);
             for (unsigned int a = 0; a < scalar.n_dofs_per_cell(); ++a)

@@ -1,6 +1,7 @@
 #ifndef nodus_contact_free_motions_h
 #define nodus_contact_free_motions_h
 
+#include "bulk/boundary_conditions.h"
 #include "contact/contact_assembler.h"
 #include "mesh/bodies.h"
 #include "rigid/rigid_bodies.h"
@@ -41,8 +42,8 @@ namespace Nodus
 
     /// By prescribed displacements; driven rigid bodies by the components that are not free.
     void hold_prescribed(const dealii::AffineConstraints<double> &constraints);
-    /// By those of the conditions that act at @p time.
-    void hold_springs(const std::vector<BoundaryConditionParameters> &conditions, double time);
+    /// By those of the loads that act at @p time. Collective.
+    void hold_springs(const std::vector<BoundaryConditions::Load> &loads, double time);
     /// By closed sites. Those that slip hold their normal direction and the tangential one across the friction force.
     /// @p as_closed: open sites with a master point hold their normal direction, too. Collective.
     void hold_contact(const ContactSurfaces &surfaces,
@@ -66,6 +67,7 @@ namespace Nodus
     void   take(unsigned int body, const Point &x, const Vector3 &direction);
     void   hold();
     void   hold(DoFIndex dof);
+    Point  position(const PointInCell &place) const;
     Motion describe(const Eigen::VectorXd &motion) const;
 
     const Bodies                  &bodies_;

@@ -1,8 +1,8 @@
 #include "output/body_points.h"
 #include "base/deal_ii_versions.h"
+#include "mesh/point_location.h"
 #include "mesh/sides.h"
 
-#include <deal.II/base/geometry_info.h>
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
@@ -18,43 +18,6 @@ namespace Nodus
   {
     using Cell = DoFHandler<dim>::active_cell_iterator;
 
-    /// How far outside of a cell, in parts of it, a point still is in it: round-off of its coordinates.
-    constexpr double round_off = 1e-6;
-
-    /// Place of @p X in the unit cell; none where the mapping has no inverse, far from the cell.
-    std::optional<Point> unit_point(const Mapping<dim> &mapping, const Cell &cell, const Point &X)
-    {
-      try
-      {
-        return mapping.transform_real_to_unit_cell(cell, X);
-      }
-      catch (const Mapping<dim>::ExcTransformationFailed &)
-      {
-        return {};
-      }
-    }
-
-    /// Of @p X to @p cell; where the mapping has no inverse, to its nearest vertex.
-    double distance(const Mapping<dim> &mapping, const Cell &cell, const Point &X)
-    {
-      double nearest = std::numeric_limits<double>::max();
-      for (const unsigned int v : cell->vertex_indices())
-        nearest = std::min(nearest, cell->vertex(v).distance(X));
-      if (const auto p = unit_point(mapping, cell, X))
-        nearest = std::min(
-            nearest,
-            mapping.transform_unit_to_real_cell(cell, GeometryInfo<dim>::project_to_unit_cell(*p)).distance(X));
-      return nearest;
-    }
-
-    /// Curved cells may bulge out of the box of their vertices.
-    bool may_hold(const Cell &cell, const Point &X)
-    {
-      const double margin = 0.5 * cell->diameter();
-      const Point  centre = cell->center();
-      return (X - centre).norm() < 0.5 * cell->diameter() + margin;
-    }
-
     /// Why @p place is refused. Collective.
     std::string outside(const Bodies            &bodies,
                         const DoFHandler<dim>   &dof_handler,
@@ -66,7 +29,7 @@ namespace Nodus
         if (cell->is_locally_owned() && bodies.has_mesh(cell->material_id()))
         {
           double &nearest = distances[cell->material_id()];
-          nearest         = std::min(nearest, distance(mapping, cell, place.X));
+          nearest         = std::min(nearest, distance_to(mapping, cell, place.X));
         }
       Utilities::MPI::min(distances, communicator_of(dof_handler.get_triangulation()), distances);
       const unsigned int nearest = std::min_element(distances.begin(), distances.end()) - distances.begin();
@@ -77,7 +40,7 @@ namespace Nodus
         text << ", at a distance of " << distances[nearest];
       else
         text << "; the nearest body is " << nearest + 1 << " (" << bodies.name(nearest) << "), at a distance of "
-             << (distances[nearest] < round_off * distances[place.body - 1] ? 0. : distances[nearest]);
+             << (distances[nearest] < point_round_off * distances[place.body - 1] ? 0. : distances[nearest]);
       return text.str();
     }
   } // namespace
@@ -96,9 +59,8 @@ namespace Nodus
     for (const Cell &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         for (unsigned int i = 0; i < places.size(); ++i)
-          if (!found[i] && cell->material_id() + 1 == places[i].body && may_hold(cell, places[i].X))
-            if (const auto p = unit_point(mapping, cell, places[i].X);
-                p && GeometryInfo<dim>::distance_to_unit_cell(*p) < round_off)
+          if (!found[i] && cell->material_id() + 1 == places[i].body)
+            if (const auto p = unit_point_in(mapping, cell, places[i].X))
             {
               cells[i] = cell;
               found[i] = p;

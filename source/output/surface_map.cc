@@ -53,8 +53,10 @@ namespace Nodus
       }
       for (unsigned int n = 0; n < parameters.boundary_conditions.size(); ++n)
       {
-        const auto       &condition = parameters.boundary_conditions[n];
-        const bool        on_cells  = condition.type == Type::body_force;
+        const auto &condition = parameters.boundary_conditions[n];
+        if (condition.at_point())
+          continue; // is on no face
+        const bool        on_cells = condition.type == Type::body_force;
         const std::string name = "boundary condition " + std::to_string(n + 1) + in_brackets(condition.name) + ", " +
                                  text_of(condition.type);
         roles.push_back({name, {condition.region, bodies, name, on_cells}, on_cells, condition.holds()});

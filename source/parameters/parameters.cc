@@ -33,7 +33,9 @@ namespace Nodus
         {BoundaryConditionParameters::Type::traction, "traction"},
         {BoundaryConditionParameters::Type::pressure, "pressure"},
         {BoundaryConditionParameters::Type::body_force, "body force"},
-        {BoundaryConditionParameters::Type::spring, "spring"}};
+        {BoundaryConditionParameters::Type::spring, "spring"},
+        {BoundaryConditionParameters::Type::point_load, "point load"},
+        {BoundaryConditionParameters::Type::point_spring, "point spring"}};
 
     void add(ParameterHandler &prm, BodyParameters &body)
     {
@@ -113,13 +115,20 @@ namespace Nodus
           "from force and moment where components are Free, traction per "
           "reference area [pressure], pressure that "
           "follows the surface and pushes on the body where positive [pressure], body force per reference volume "
-          "[force/volume], spring to the ground per reference area [pressure/length].");
+          "[force/volume], spring to the ground per reference area [pressure/length], force at one Point of a body "
+          "[force], spring to the ground at one Point [force/length].");
       add_region(
           prm,
           "",
           condition.region,
           "; 0: every body",
           "For displacements it is asked at the nodes, for loads at the centres of the faces (body force: cells).");
+      prm.add_parameter("Point",
+                        condition.point,
+                        "Where a point load or point spring acts, in the reference configuration [length]: x, y, z of "
+                        "any point in or on a body, which need not be a node; the shape functions of the cell there "
+                        "share the force out to its nodes. Where bodies touch, Body says on which of them it acts.",
+                        numbers);
       add_components(prm,
                      "Components",
                      condition.components,

@@ -35,6 +35,37 @@ namespace Nodus
                       "has no effect, because Value does not ask for it; write for example 'Value = table'");
     }
 
+    /// What has a point has no faces.
+    void check_point(const Section &section, const BoundaryConditionParameters &condition)
+    {
+      const std::string type = text_of(condition.type);
+      if (!condition.at_point())
+        return section.require(condition.point.empty(),
+                               "Point",
+                               "has no effect on a " + type +
+                                   "; remove it, or set 'Type = point load' or 'Type = point spring'");
+      section.require(condition.point.size() == dim,
+                      "Point",
+                      condition.point.empty()
+                          ? "is missing; give the reference position x, y, z where the " + type + " acts"
+                          : "has " + std::to_string(condition.point.size()) + " numbers; give three, separated by ','");
+      section.require(!condition.region.has_ids(),
+                      "Boundary ids",
+                      "has no meaning for a " + type + ", which acts at 'Point'; remove it");
+      section.require(condition.region.where.empty(),
+                      "Where",
+                      "has no meaning for a " + type + ", which acts at 'Point'; remove it");
+      const BoundaryConditionParameters none;
+      section.require(
+          condition.force == none.force && condition.moment == none.moment,
+          condition.force == none.force ? "Moment" : "Force",
+          "has no effect on a " + type + "; " +
+              (condition.force == none.force
+                   ? "give a moment as two point loads that are opposite to each other, or as the Moment of a "
+                     "rigid motion with 'Free' components"
+                   : "give its Components and, as Value, an expression for each of them"));
+    }
+
     /// A face of one deformable body that acts as long as the run; what is free moves its nodes.
     void check_coupling(const Section &section, const BoundaryConditionParameters &condition)
     {
@@ -114,7 +145,8 @@ namespace Nodus
   {
     using Type = BoundaryConditionParameters::Type;
     check(section, condition.region, "", n_bodies, 0);
-    const bool on_boundary = condition.type != Type::body_force;
+    check_point(section, condition);
+    const bool on_boundary = condition.type != Type::body_force && !condition.at_point();
     section.require(on_boundary ? condition.region.chooses_faces() : !condition.region.has_ids(),
                     "Boundary ids",
                     on_boundary

@@ -27,7 +27,7 @@ namespace Nodus
     FreeMotions      motions(
         model.bodies, model.dof_handler, *model.mapping, model.rigid_bodies, nodes, state.unknowns.block(0));
     motions.hold_prescribed(model.boundary_conditions->homogeneous_constraints());
-    motions.hold_springs(model.parameters.boundary_conditions, time);
+    motions.hold_springs(model.boundary_conditions->loads(), time);
     model.contact->hold(motions, as_closed);
     return motions.free();
   }

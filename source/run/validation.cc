@@ -45,6 +45,7 @@ namespace Nodus
     struct Extent
     {
       unsigned int nodes = 0, faces = 0, cells = 0;
+      std::string  point;        ///< that it acts at
       double       measure = 0.; ///< area of the faces or volume of the cells, reference configuration
     };
 
@@ -120,10 +121,10 @@ namespace Nodus
       text << text_of(condition.type);
       for (unsigned int c = 0; c < condition.components.size(); ++c)
         text << (c == 0 ? " of " : ", ") << "xyz"[condition.components[c]];
-      text << " on ";
+      text << (condition.at_point() ? " at " : " on ") << extent.point;
       if (condition.type == Type::body_force)
         text << counted(extent.cells, "cell") << ", volume " << extent.measure;
-      else
+      else if (!condition.at_point())
       {
         if (condition.holds())
           text << counted(extent.nodes, "node") << " and ";
@@ -238,11 +239,19 @@ namespace Nodus
     /// What each boundary condition takes hold of. Collective.
     void describe_conditions(const Model &model, Console &console)
     {
+      auto load = model.boundary_conditions->loads().begin(); // in the order of the conditions
       for (unsigned int n = 0; n < model.parameters.boundary_conditions.size(); ++n)
       {
         const auto &condition = model.parameters.boundary_conditions[n];
+        Extent      extent;
+        if (condition.at_point())
+          extent.point = coordinates(load->point()) + " of body " + std::to_string(load->place->body + 1) +
+                         in_brackets(model.bodies.name(load->place->body));
+        else
+          extent = extent_of(condition, model.bodies, model.dof_handler, *model.mapping);
         console.line("  boundary condition " + std::to_string(n + 1) + in_brackets(condition.name) + ": " +
-                     describe(condition, extent_of(condition, model.bodies, model.dof_handler, *model.mapping)));
+                     describe(condition, extent));
+        load += !condition.holds();
       }
     }
 

@@ -91,6 +91,7 @@ namespace
     print("\nboundary condition", condition.name);
     print_choice("type", condition.type);
     print("region", condition.region);
+    print("point", condition.point);
     print("components", condition.components);
     print("value", condition.value);
     print("table times", condition.table_times);

@@ -87,11 +87,14 @@ namespace Nodus
       traction,     ///< dead, per reference area
       pressure,     ///< follower, per current area, positive pushes on the body
       body_force,   ///< dead, per reference volume; the region's body only
-      spring        ///< to ground, stiffness per reference area
+      spring,       ///< to ground, stiffness per reference area
+      point_load,   ///< dead force at a point of a body
+      point_spring  ///< to ground, stiffness at a point of a body
     };
     std::string               name;
     Type                      type = Type::displacement;
     RegionParameters          region;
+    std::vector<double>       point;      ///< of types point_load and point_spring: reference position; else empty
     std::vector<unsigned int> components; ///< 0, 1, 2; not used by pressure
     /// muParser expressions of x, y, z, t and the value of the table: one per component, one for pressure.
     std::vector<std::string>   value;
@@ -111,6 +114,11 @@ namespace Nodus
     bool holds() const
     {
       return type == Type::displacement || type == Type::rigid_motion;
+    }
+    /// Whether it acts at one point of a body.
+    bool at_point() const
+    {
+      return type == Type::point_load || type == Type::point_spring;
     }
     /// Whether it couples its nodes to a rigid motion that equilibrium finds.
     bool couples() const
