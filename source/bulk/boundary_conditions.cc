@@ -180,10 +180,10 @@ namespace Nodus
       {
         const BoundaryConditionParameters &condition = parameters_[n];
         const bool                         on_cells  = condition.type == Type::body_force || condition.at_point();
-        RegionParameters                   where     = condition.region;
-        if (on_cells)
-          where = {where.bodies, {}, where.where};
-        Load load{&condition, label(n), Region(where, bodies_, label(n), on_cells), functions_[n].get(), {}};
+        const RegionParameters             where =
+            on_cells ? RegionParameters{condition.region.bodies, {}, condition.region.where} : condition.region;
+        Load load{&condition, label(n), {where, bodies_, label(n), on_cells}, functions_[n].get(), {}, {}};
+        load.directions = condition.directions();
         if (condition.at_point())
         {
           load.place = locate(bodies_, mapping_, where, load.point(), label(n));

@@ -24,14 +24,15 @@ namespace Nodus
   class BoundaryConditions
   {
   public:
-    /// A load condition ready for quadrature: value at (X, t) has as many entries as the condition's components.
+    /// A load condition ready for quadrature: value at (X, t) has an entry for each direction.
     struct Load
     {
       const BoundaryConditionParameters *parameters;
       std::string                        label; ///< for messages
       Region                             region;
-      dealii::Function<dim>             *value; ///< time-dependent: set_time(t), then value(X, component)
-      std::optional<PointInCell>         place; ///< of a condition at a point, which has no faces
+      dealii::Function<dim>             *value;      ///< time-dependent: set_time(t), then value(X, component)
+      std::optional<PointInCell>         place;      ///< of a condition at a point, which has no faces
+      std::vector<Vector3>               directions; ///< that the entries of value act along; none of a pressure
       /// The reference position of that.
       Point point() const
       {

@@ -100,12 +100,15 @@ namespace Nodus
     if (parameters.at_point() && parameters.point.size() != dim)
       throw InputError(label + ": 'Point' has " + std::to_string(parameters.point.size()) +
                        " numbers; give three, the reference position x, y, z");
-    const std::size_t expected =
-        parameters.type == BoundaryConditionParameters::Type::pressure ? 1 : parameters.components.size();
+    if (!parameters.direction.empty() && (parameters.direction.size() != dim || !parameters.components.empty()))
+      throw InputError(label + ": 'Direction' has to be three numbers, instead of 'Components'");
+    const std::size_t expected = parameters.n_values();
     if (parameters.value.size() != expected || expected == 0)
       throw InputError(label + ": " + std::to_string(parameters.value.size()) + " expressions in 'Value' for " +
                        (parameters.type == BoundaryConditionParameters::Type::pressure
                             ? "a pressure, which takes exactly one"
+                        : !parameters.direction.empty()
+                            ? "a 'Direction', which takes exactly one"
                             : std::to_string(expected) + " 'Components'; write one expression for each component"));
 
     if (parameters.function)

@@ -89,7 +89,8 @@ namespace Nodus
     void             evaluate_dead_loads(LoadedCell &loaded);
     bool             follows(const LoadedCell &cell, const LoadedFace &face) const;
     FollowerPressure follower(const LoadedFace &loaded) const;
-    void             add_springs(const LoadedFace &loaded, const Cell &cell) const;
+    double displacement(const LoadedFace &loaded, unsigned int q, unsigned int c, const std::vector<double> &u) const;
+    void   add_springs(const LoadedFace &loaded, const Cell &cell) const;
 
     unsigned int dof(const unsigned int node, const unsigned int component) const
     {
@@ -210,25 +211,24 @@ namespace Nodus
       volume.reinit(loaded.cell);
     for (const auto *load : loaded.body_forces)
       for (const auto q : volume.quadrature_point_indices())
-        for (unsigned int c = 0; c < load->parameters->components.size(); ++c)
+        for (unsigned int c = 0; c < load->directions.size(); ++c)
         {
           const double force = value(*load, volume.quadrature_point(q), c) * volume.JxW(q);
           for (unsigned int a = 0; a < dof_handler.get_fe().base_element(0).n_dofs_per_cell(); ++a)
-          {
-            const unsigned int i = dof(a, load->parameters->components[c]);
-            loaded.dead(i) += force * volume.shape_value(i, q);
-          }
+            for (unsigned int i = 0; i < dim; ++i)
+              loaded.dead(dof(a, i)) += force * load->directions[c][i] * volume.shape_value(dof(a, i), q);
         }
     for (const auto &face : loaded.faces)
     {
-      const ShapeTable &table = *face.shape;
-      const auto       &load  = *face.load->parameters;
+      const ShapeTable &table      = *face.shape;
+      const auto       &load       = *face.load->parameters;
+      const auto       &directions = face.load->directions;
       for (unsigned int q = 0; q < face.points.size(); ++q)
       {
         Vector3 force;
         if (load.type == Type::traction || load.type == Type::point_load)
-          for (unsigned int c = 0; c < load.components.size(); ++c)
-            force[load.components[c]] = face.values[q * load.components.size() + c] * face.points[q].area;
+          for (unsigned int c = 0; c < directions.size(); ++c)
+            force += face.values[q * directions.size() + c] * face.points[q].area * directions[c];
         else if (load.type == Type::pressure && material(loaded.cell).small_strain())
           force = -face.values[q] * face.points[q].weight *
                   cross_product_3d(face.points[q].tangent[0], face.points[q].tangent[1]);
@@ -239,25 +239,39 @@ namespace Nodus
     }
   }
 
+  /// Displacement at point @p q of the load along its direction @p c.
+  double Loads::Implementation::displacement(const LoadedFace          &loaded,
+                                             const unsigned int         q,
+                                             const unsigned int         c,
+                                             const std::vector<double> &u) const
+  {
+    const Vector3 &direction = loaded.load->directions[c];
+    double         along     = 0.;
+    for (unsigned int a = 0; a < loaded.shape->nodes.size(); ++a)
+      for (unsigned int i = 0; i < dim; ++i)
+        along += loaded.shape->value[q][a] * direction[i] * u[dof(loaded.shape->nodes[a], i)];
+    return along;
+  }
+
   void Loads::Implementation::add_springs(const LoadedFace &loaded, const Cell &cell) const
   {
-    const ShapeTable &table      = *loaded.shape;
-    const auto       &components = loaded.load->parameters->components;
+    const unsigned int n_directions = loaded.load->directions.size();
     for (unsigned int q = 0; q < loaded.points.size(); ++q)
-      for (unsigned int c = 0; c < components.size(); ++c)
+      for (unsigned int c = 0; c < n_directions; ++c)
       {
-        const double stiffness = loaded.values[q * components.size() + c] * loaded.points[q].area;
-        double       u         = 0.;
-        for (unsigned int a = 0; a < table.nodes.size(); ++a)
-          u += table.value[q][a] * cell.u[dof(table.nodes[a], components[c])];
-        for (unsigned int a = 0; a < table.nodes.size(); ++a)
+        const double stiffness = loaded.values[q * n_directions + c] * loaded.points[q].area;
+        const double u         = displacement(loaded, q, c, cell.u);
+        std::vector<std::pair<unsigned int, double>> shares; // of the displacements of the cell in that
+        for (unsigned int a = 0; a < loaded.shape->nodes.size(); ++a)
+          for (unsigned int i = 0; i < dim; ++i)
+            if (const double along = loaded.load->directions[c][i]; along != 0.)
+              shares.emplace_back(dof(loaded.shape->nodes[a], i), loaded.shape->value[q][a] * along);
+        for (const auto &[i, share] : shares)
         {
-          const unsigned int i = dof(table.nodes[a], components[c]);
-          cell.internal(i) += stiffness * table.value[q][a] * u;
+          cell.internal(i) += stiffness * share * u;
           if (cell.tangent)
-            for (unsigned int b = 0; b < table.nodes.size(); ++b)
-              (*cell.tangent)(i, dof(table.nodes[b], components[c])) +=
-                  stiffness * table.value[q][a] * table.value[q][b];
+            for (const auto &[j, other] : shares)
+              (*cell.tangent)(i, j) += stiffness * share * other;
         }
       }
   }
@@ -279,18 +293,11 @@ namespace Nodus
     double                energy = 0.;
     for (const LoadedFace &loaded : l.loaded_cells[l.load_of[number]].faces)
     {
-      if (!is_spring(loaded))
-        continue;
-      const ShapeTable &table      = *loaded.shape;
-      const auto       &components = loaded.load->parameters->components;
-      for (unsigned int q = 0; q < loaded.points.size(); ++q)
-        for (unsigned int c = 0; c < components.size(); ++c)
-        {
-          double u_q = 0.;
-          for (unsigned int a = 0; a < table.nodes.size(); ++a)
-            u_q += table.value[q][a] * u[l.dof(table.nodes[a], components[c])];
-          energy += 0.5 * loaded.values[q * components.size() + c] * loaded.points[q].area * u_q * u_q;
-        }
+      const unsigned int n_directions = loaded.load->directions.size();
+      for (unsigned int q = 0; q < loaded.points.size() && is_spring(loaded); ++q)
+        for (unsigned int c = 0; c < n_directions; ++c)
+          energy += 0.5 * loaded.values[q * n_directions + c] * loaded.points[q].area *
+                    std::pow(l.displacement(loaded, q, c, u), 2);
     }
     return energy;
   }

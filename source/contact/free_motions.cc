@@ -173,11 +173,9 @@ namespace Nodus
       if (condition.type == Type::point_spring)
       {
         const Point x = position(*load.place);
-        for (const unsigned int c : condition.components)
+        for (const Vector3 &direction : load.directions)
           if (first_rank)
           {
-            Vector3 direction;
-            direction[c] = 1.;
             take(load.place->body, x, direction);
             hold();
           }
@@ -191,10 +189,15 @@ namespace Nodus
             cell->get_dof_indices(dofs);
             for (unsigned int a = 0; a < scalar.n_dofs_per_cell(); ++a)
               if (scalar.has_support_on_face(a, face))
-                for (const unsigned int c : condition.components)
-                  if (const DoFIndex dof = dofs[fe.component_to_system_index(c, a)];
-                      dof_handler_.locally_owned_dofs().is_element(dof))
-                    hold(dof);
+                if (const DoFIndex dof = dofs[fe.component_to_system_index(0, a)];
+                    dof_handler_.locally_owned_dofs().is_element(dof))
+                  for (const Vector3 &direction : load.directions)
+                  {
+                    take(cell->material_id(),
+                         x_[dof_handler_.locally_owned_dofs().index_within_set(dof) / dim],
+                         direction);
+                    hold();
+                  }
           }
     }
   }

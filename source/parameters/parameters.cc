@@ -133,6 +133,11 @@ namespace Nodus
                      "Components",
                      condition.components,
                      "Directions the condition acts in [-], e.g. x, z; none for a pressure.");
+      prm.add_parameter("Direction",
+                        condition.direction,
+                        "Of a traction, body force, spring, point load or point spring [-]: the one direction that it "
+                        "acts along, instead of Components; three numbers in global axes, of any length.",
+                        numbers);
       add_expressions(
           prm,
           "Value",

@@ -66,6 +66,37 @@ namespace Nodus
                    : "give its Components and, as Value, an expression for each of them"));
     }
 
+    /// Axes or one direction of its own.
+    void check_directions(const Section &section, const BoundaryConditionParameters &condition)
+    {
+      const bool                 has_direction = !condition.direction.empty();
+      const std::vector<double> &d             = condition.direction;
+      section.require(!has_direction || !condition.holds(),
+                      "Direction",
+                      "has no meaning for a " + text_of(condition.type) +
+                          ", which holds x, y or z; name these in Components, and hold other directions by a contact "
+                          "pair with a plane that is bilateral (steps.md, Supports along other axes)");
+      const bool directed = condition.type != BoundaryConditionParameters::Type::pressure;
+      section.require(directed || !has_direction,
+                      "Direction",
+                      "has no meaning for a pressure, which acts along the normal; remove it");
+      section.require(!has_direction || condition.components.empty(),
+                      "Direction",
+                      "is given besides Components; remove one of the two");
+      section.require(!has_direction ||
+                          (d.size() == dim && std::any_of(d.begin(), d.end(), [](const double x) { return x != 0.; })),
+                      "Direction",
+                      "must be three numbers, separated by ',', that are not all zero; for example 0, 0.6, 0.8");
+      section.require(condition.components.empty() != (directed && !has_direction),
+                      "Components",
+                      directed ? "is missing; give some of x, y, z"
+                               : "has no meaning for a pressure, which acts along the normal; remove it");
+      const std::set<unsigned int> distinct(condition.components.begin(), condition.components.end());
+      section.require(distinct.size() == condition.components.size(),
+                      "Components",
+                      "names a direction twice; give each of x, y, z at most once");
+    }
+
     /// A face of one deformable body that acts as long as the run; what is free moves its nodes.
     void check_coupling(const Section &section, const BoundaryConditionParameters &condition)
     {
@@ -156,16 +187,7 @@ namespace Nodus
                     "Where",
                     "asks for a normal, which the cells that a body force acts on do not have; use x, y, z");
 
-    const bool directed = condition.type != Type::pressure;
-    section.require(condition.components.empty() != directed,
-                    "Components",
-                    directed ? "is missing; give some of x, y, z"
-                             : "has no meaning for a pressure, which acts along the normal; remove it");
-    const std::set<unsigned int> distinct(condition.components.begin(), condition.components.end());
-    section.require(distinct.size() == condition.components.size(),
-                    "Components",
-                    "names a direction twice; give each of x, y, z at most once");
-
+    check_directions(section, condition);
     check(section, condition.motion, "", Vector3());
     if (condition.type == Type::rigid_motion)
     {
@@ -185,13 +207,14 @@ namespace Nodus
                     "or Rotation has no effect on a " + text_of(condition.type) +
                         "; remove them, or set 'Type = rigid motion'");
     check_table(section, condition);
-    const std::size_t wanted = directed ? condition.components.size() : 1;
+    const std::size_t wanted = condition.n_values();
     section.require(condition.value.size() == wanted,
                     "Value",
                     condition.value.empty()
                         ? "is missing; give an expression of x, y, z, t such as 0 or -0.1*t"
                         : "has " + std::to_string(condition.value.size()) + " expressions for " +
-                              std::to_string(wanted) + (directed ? " components" : " pressure") +
+                              std::to_string(wanted) +
+                              (wanted == condition.components.size() ? " components" : " direction") +
                               "; separate expressions by ';', one for each component or one for all");
     for (const auto &expression : condition.value)
     {

@@ -121,6 +121,8 @@ namespace Nodus
       text << text_of(condition.type);
       for (unsigned int c = 0; c < condition.components.size(); ++c)
         text << (c == 0 ? " of " : ", ") << "xyz"[condition.components[c]];
+      if (!condition.direction.empty())
+        text << " along " << coordinates(Point(condition.directions().front()));
       text << (condition.at_point() ? " at " : " on ") << extent.point;
       if (condition.type == Type::body_force)
         text << counted(extent.cells, "cell") << ", volume " << extent.measure;

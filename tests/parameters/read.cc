@@ -93,6 +93,7 @@ namespace
     print("region", condition.region);
     print("point", condition.point);
     print("components", condition.components);
+    print("direction", condition.direction);
     print("value", condition.value);
     print("table times", condition.table_times);
     print("table values", condition.table_values);

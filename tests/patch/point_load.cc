@@ -1,13 +1,15 @@
-// Loads and springs at points that are no nodes. Statics gives what they do to a body whatever its mesh: six springs
-// that hold it in a determinate way elongate by their force over their stiffness, a clamped face takes force and
-// moment. A bar of one cell across has uniform stress under a force in the middle of its end (degree 1), and under nine
-// forces that stand as 1:4:1 x 1:4:1 (degree 2). Linear laws take in half of the force times the way of its point.
+// Loads and springs at points that are no nodes, and along axes that are not x, y, z. Statics gives what they do to a
+// body whatever its mesh: six springs that hold it in a determinate way elongate by their force over their stiffness, a
+// clamped face takes force and moment. A bar of one cell across has uniform stress under a force in the middle of its
+// end (degree 1), and under nine forces that stand as 1:4:1 x 1:4:1 (degree 2). Linear laws take in half of the force
+// times the way of its point.
 
 #include "../cases.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/vector.h>
+#include <deal.II/physics/transformations.h>
 
 #include <functional>
 #include <map>
@@ -120,6 +122,42 @@ namespace
     p.bodies[0].refine_where     = "x+y+z>1.6";
   }
 
+  /// Directions and all points turned about (1, 1, 1).
+  const dealii::Tensor<2, dim> R =
+      dealii::Physics::Transformations::Rotations::rotation_matrix_3d(Point(Vector3({1, 1, 1}) / std::sqrt(3.)), 0.5);
+  std::vector<double> turned(const Vector3 &v)
+  {
+    const Vector3 there = R * v;
+    return {there[0], there[1], there[2]};
+  }
+  void turn(BodyParameters &body)
+  {
+    body.rotation_axis  = Vector3({1, 1, 1});
+    body.rotation_angle = 0.5 * 180. / dealii::numbers::PI;
+  }
+  /// Turns what on_springs() makes; the load becomes one along its direction.
+  void turn(Parameters &p)
+  {
+    turn(p.bodies[0]);
+    for (auto &c : p.boundary_conditions)
+    {
+      Vector3 along = force;
+      if (c.type == Type::point_spring)
+      {
+        along                  = Vector3();
+        along[c.components[0]] = 2.; // of any length
+      }
+      c.point      = turned(Vector3({c.point[0], c.point[1], c.point[2]}));
+      c.direction  = turned(along);
+      c.components = {};
+    }
+    std::ostringstream load;
+    load << std::setprecision(17) << force.norm() << "*t";
+    p.boundary_conditions[0].value = {load.str()};
+    for (auto &point : p.output_points)
+      point.position = R * point.position;
+  }
+
   /// @p expected_part of the load at the end.
   void on_springs(const std::string                       &name,
                   const unsigned int                       degree,
@@ -141,7 +179,10 @@ namespace
     std::ostringstream own_log;
     ContactProblem     problem(p, world(), own_log);
     check(name + ": no warning", !warns(problem, own_log, restarts));
-    const auto   u         = displacements(p.output.results_folder);
+    auto u = displacements(p.output.results_folder);
+    if (!p.boundary_conditions[0].direction.empty())
+      for (auto &[point, there] : u)
+        there = transpose(R) * there;
     const auto   reference = elongations();
     const double largest   = std::abs(*std::max_element(
         reference.begin(), reference.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
@@ -228,6 +269,40 @@ namespace
     check("  reaction", problem.reactions()[0].second[2], -F, 1e-10);
   }
 
+  /// A column that stands askew on springs along its axis, held across it by others, under its weight and a traction:
+  /// it goes down by (T + b)/k at the bottom, and by T/E + b/(2 E) more at the top.
+  void askew_column(const unsigned int degree)
+  {
+    constexpr double E = 1000., k = 300., T = 2., b = 3.;
+    Parameters       p = cube("column", degree);
+    p.bodies           = {box("column", "2,2,3", {0, 0, 0}, {1, 1, 1}, E, 0.)};
+    turn(p.bodies[0]);
+    const auto along = [&](const Type type, const RegionParameters &where, const Vector3 &direction, const double value)
+    {
+      auto c      = condition("", type, where, {}, {std::to_string(value)});
+      c.direction = turned(direction);
+      p.boundary_conditions.push_back(c);
+    };
+    along(Type::spring, region(1, {x_minus}), Vector3({1, 0, 0}), k);
+    along(Type::spring, region(1, {y_minus}), Vector3({0, 1, 0}), k);
+    along(Type::spring, region(1, {z_minus}), Vector3({0, 0, 5}), k);
+    along(Type::traction, region(1, {z_plus}), Vector3({0, 0, -1}), T);
+    along(Type::body_force, region(1, {}), Vector3({0, 0, -1}), b);
+    std::ostringstream own_log;
+    ContactProblem     problem(p, world(), own_log);
+    check("askew column of degree " + std::to_string(degree) + ": no warning", !warns(problem, own_log));
+    const double u = (T + b) / k;
+    check("  bottom", problem.displacement(1, Point(R * Vector3({1, 0, 0}))), R * Vector3({0, 0, -u}), 1e-8);
+    check("  top",
+          problem.displacement(1, Point(R * Vector3({0, 1, 1}))),
+          R * Vector3({0, 0, -u - (T + 0.5 * b) / E}),
+          1e-8);
+    check("  stored energy",
+          last_energy(p.output.results_folder, "stored"),
+          0.5 * (T + b) * u + 0.5 / E * (T * T + T * b + b * b / 3.),
+          degree == 2 ? 1e-8 : 1e-3);
+  }
+
   /// A contact takes the force and its moment.
   void pressed_block(const unsigned int degree)
   {
@@ -258,6 +333,8 @@ int main(int argc, char **argv)
     const std::string of_degree = " of degree " + std::to_string(degree);
     on_springs("springs" + of_degree, degree, 1., nothing);
     on_springs("hanging" + of_degree, degree, 1., refine_corner);
+    on_springs("turned" + of_degree, degree, 1., [](Parameters &p) { turn(p); });
+    askew_column(degree);
     clamped("clamp" + of_degree, degree, nothing);
     clamped("hanging clamp" + of_degree, degree, refine_corner);
     pulled_bar(degree);

@@ -96,7 +96,8 @@ namespace Nodus
     RegionParameters          region;
     std::vector<double>       point;      ///< of types point_load and point_spring: reference position; else empty
     std::vector<unsigned int> components; ///< 0, 1, 2; not used by pressure
-    /// muParser expressions of x, y, z, t and the value of the table: one per component, one for pressure.
+    std::vector<double>       direction;  ///< of loads and springs along any axis, instead of components; else empty
+    /// muParser expressions of x, y, z, t and the value of the table: one per component, one for pressure or direction.
     std::vector<std::string>   value;
     std::vector<double>        table_times;  ///< of the table, increasing [time] ...
     std::vector<double>        table_values; ///< ... and its values, linear between them [as type says]
@@ -119,6 +120,24 @@ namespace Nodus
     bool at_point() const
     {
       return type == Type::point_load || type == Type::point_spring;
+    }
+    /// Unit vectors along what the entries of value act, none of a pressure.
+    std::vector<Vector3> directions() const
+    {
+      std::vector<Vector3> all(components.size());
+      for (unsigned int e = 0; e < components.size(); ++e)
+        all[e][components[e]] = 1.;
+      if (direction.size() == dim)
+      {
+        const Vector3 along({direction[0], direction[1], direction[2]});
+        all.push_back(along / along.norm());
+      }
+      return all;
+    }
+    /// How many entries value has.
+    unsigned int n_values() const
+    {
+      return type == Type::pressure || !direction.empty() ? 1 : components.size();
     }
     /// Whether it couples its nodes to a rigid motion that equilibrium finds.
     bool couples() const
