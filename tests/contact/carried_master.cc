@@ -184,7 +184,7 @@ namespace
     auto &pair            = p.contact_pairs[0];
     pair.slave            = region(1, {z_plus});
     pair.master.bodies    = {2};
-    pair.master_surface   = {shape, {}, {}, 2., false, {}};
+    pair.master_surface   = {shape, {}, {}, 2., false, {}, {}};
     // deep enough for the integration points to touch it at first
     pair.master_surface.point = Point(0, 0, (shape == Shape::paraboloid || shape == Shape::plane ? 0 : 2) - 0.01);
     pair.master_surface.axis  = shape == Shape::cylinder ? Vector3({0., 1., 0.}) : Vector3({0., 0., -1.});
@@ -240,7 +240,7 @@ namespace
     p.contact_pairs                    = {ContactPairParameters()};
     p.contact_pairs[0].slave           = region(1, {z_plus});
     p.contact_pairs[0].master.bodies   = {2};
-    p.contact_pairs[0].master_surface  = {Shape::cylinder, Point(0., 0.2, 1.), Vector3({0., 1., 0.}), 1., false, {}};
+    p.contact_pairs[0].master_surface  = {Shape::cylinder, Point(0., 0.2, 1.), Vector3({0., 1., 0.}), 1., false, {}, {}};
     p.contact_pairs[0].friction_coefficient = 0.5;
     p.load_stepping                         = {{1., 2.}, {2, 8}};
     p.output.results_folder                 = folder;
