@@ -263,7 +263,8 @@ namespace Nodus
                            dealii::Utilities::string_to_double(given[2]) /
                                std::max(dealii::Utilities::string_to_double(given[0]),
                                         dealii::Utilities::string_to_double(given[1])));
-      if (name == "plate_with_a_hole") // what is added has cells as large as half of the square
+      if (name == "plate_with_a_hole") // what is added has cells as large as half of the square, at least half as
+                                       // many layers as there are of nodes
       {
         const auto rows = [&](const unsigned int before, const unsigned int after)
         {
@@ -271,7 +272,7 @@ namespace Nodus
               dealii::Utilities::string_to_double(given[before]) + dealii::Utilities::string_to_double(given[after]);
           return 2. + std::max(0., added) / dealii::Utilities::string_to_double(given[1]);
         };
-        n *= rows(2, 3) * rows(4, 5);
+        n *= 0.5 * rows(2, 3) * rows(4, 5);
       }
       for (const unsigned int i : count->arguments)
       {
