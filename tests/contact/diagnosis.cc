@@ -277,4 +277,20 @@ int main(int argc, char **argv)
           "it holds the master side of contact pair 1",
           "`Boundary condition 2/Boundary ids` | 4 |",
           "it holds the slave side of contact pair 1"});
+
+  // between the four nodes of a stiff block a soft one comes through
+  auto coarse                     = p;
+  coarse.bodies                   = {box("lower", "8,8,2", {0, 0, 0}, {1, 1, 1}, 100, 0.3),
+                                     box("upper", "1,1,1", {0.1, 0.1, 1}, {0.9, 0.9, 2}, 10000, 0.3)};
+  coarse.contact_pairs[0].weights = ContactPairParameters::Weights::dual;
+  coarse.load_stepping            = {{1.}, {1}};
+  coarse.load_stepping.cut_back   = false;
+  expect("a slave that is coarser than its master",
+         page(coarse),
+         "the master has finer faces than the slave",
+         {"--set \"Contact pair 1/Scheme=averaged\" --set \"Contact pair 1/Weights=nodal quadrature\"\n"});
+  coarse.contact_pairs[0].scheme  = ContactPairParameters::Scheme::averaged;
+  coarse.contact_pairs[0].weights = ContactPairParameters::Weights::nodal_quadrature;
+  const std::string cured         = page(coarse);
+  check("  with what it proposes the run succeeds", cured.empty());
 }

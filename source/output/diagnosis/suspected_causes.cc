@@ -198,6 +198,10 @@ namespace Nodus
         const bool  exact    = averaged && keys.integration == ContactPairParameters::Integration::segment;
         if (pair.face_size <= coarser * pair.master_face_size || exact)
           continue;
+        // a scheme that brings its own weights refuses others
+        std::vector<std::pair<std::string, std::string>> own_weights;
+        if (keys.weights != ContactPairParameters::Weights::nodal_quadrature)
+          own_weights.emplace_back("Weights", "nodal quadrature");
         causes.push_back({"the master has finer faces than the slave",
                           {text(pair_name(parameters, p),
                                 ": mean slave face ",
@@ -209,7 +213,8 @@ namespace Nodus
                           {{in_pair(p, averaged ? "Integration" : "Scheme"),
                             averaged ? text_of(keys.integration) : text_of(keys.scheme),
                             averaged ? "segment" : "averaged",
-                            "gaps are integrated over the overlaps of the faces; or exchange slave and master"}}});
+                            "gaps are integrated over the overlaps of the faces; or exchange slave and master",
+                            own_weights}}});
       }
     }
 
