@@ -242,7 +242,9 @@ namespace Nodus
       section.require(!pair.has_carried_master() || some(pair.master, rigid),
                       "Master body",
                       "is not rigid and cannot carry a rigid surface; remove it, or set 'Rigid = true' there");
-      for (const auto &[key, side] : {std::make_pair("Slave body", &pair.slave), {"Master body", &pair.master}})
+      const std::pair<const char *, const RegionParameters *> sides[] = {{"Slave body", &pair.slave},
+                                                                         {"Master body", &pair.master}};
+      for (const auto &[key, side] : sides)
         section.require(driven(*side) <= 1,
                         key,
                         "has several rigid bodies that forces drive; give each of them a contact pair of its own");

@@ -60,9 +60,9 @@ int main(int argc, char **argv)
   p.output.write_vtu      = false;
   p.output.results_folder = "open_beside_pressed_results";
 
-  const Path reference = press(p, Weights::nodal_quadrature);
-  for (const auto &[weights, name] :
-       {std::make_pair(Weights::dual, "dual"), std::make_pair(Weights::consistent, "consistent")})
+  const Path                             reference = press(p, Weights::nodal_quadrature);
+  const std::pair<Weights, const char *> others[]  = {{Weights::dual, "dual"}, {Weights::consistent, "consistent"}};
+  for (const auto &[weights, name] : others)
   {
     const Path path  = press(p, weights);
     double     force = 0., closed = 0.;
