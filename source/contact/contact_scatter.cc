@@ -186,6 +186,8 @@ namespace Nodus
                                               const double        slope,
                                               LinearSystem       &system) const
   {
+    if (slope == 0.)
+      return;
     LocalVector normal = LocalVector::Zero(sum.n_unknowns());
     for (unsigned int c = 0; c < dim; ++c)
       normal(c) = slope * pairing_[point.site].normal[c];

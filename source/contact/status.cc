@@ -288,7 +288,12 @@ namespace Nodus
     if (!merged_ && idle_ >= tolerated_passes && !regularised_ && can_regularise())
       result.to_regularised = true;
     if (result.to_regularised)
+    {
       regularise();
+      result.cycles = false;
+      returns_      = 0;
+      visited_.assign(1, code()); // statuses of other laws say nothing of these
+    }
     return result;
   }
 
@@ -320,11 +325,6 @@ namespace Nodus
         }
     if (freezes)
       update.frozen = dealii::Utilities::MPI::sum(update.frozen, surfaces_.layout().communicator);
-    if (update.to_regularised)
-    {
-      update.cycles = false;
-      returns_      = 0;
-    }
     visited_.assign(1, code());
   }
 

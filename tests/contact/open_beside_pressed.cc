@@ -4,7 +4,7 @@
 // while the gap is open, pulls, opens again, and so on: the run stops at t = 0.54. A paraboloid (z = r^2/16, 6 cells
 // an edge) is pressed into a block.
 
-#include "../cases.h"
+#include "paraboloid.h"
 
 using namespace Cases;
 
@@ -40,24 +40,8 @@ int main(int argc, char **argv)
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   using Weights = ContactPairParameters::Weights;
 
-  Parameters p;
-  for (const unsigned int volume : {1, 2})
-  {
-    BodyParameters body;
-    body.mesh_file               = SOURCE_DIR "/../meshes/paraboloid.msh";
-    body.volume_ids              = {volume};
-    body.material.law            = MaterialParameters::Law::linear_elastic;
-    body.material.youngs_modulus = 1000;
-    body.material.poissons_ratio = 0.3;
-    p.bodies.push_back(body);
-  }
-  p.boundary_conditions   = {hold("x", region(0, {10, 16}), {0}),
-                             hold("y", region(0, {12, 18}), {1}),
-                             hold("bottom", region(2, {20}), {0, 1, 2}),
-                             drive("top", region(1, {15}), 2, "-0.04*t")};
-  p.contact_pairs         = {pair(region(1, {14}), region(2, {21}))};
+  Parameters p            = paraboloid_on_block("0.04");
   p.load_stepping         = {{1.}, {20}};
-  p.output.write_vtu      = false;
   p.output.results_folder = "open_beside_pressed_results";
 
   const Path                             reference = press(p, Weights::nodal_quadrature);

@@ -2,7 +2,7 @@
 // and to the resultant of nodal quadrature. A paraboloid (z = r^2/16, 6 cells an edge) on a block, 3216 degrees of
 // freedom, pressed by 0.02.
 
-#include "../cases.h"
+#include "paraboloid.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -16,23 +16,7 @@ int main(int argc, char **argv)
   using Weights = ContactPairParameters::Weights;
   using Test    = ContactPairParameters::StatusTest;
 
-  Parameters p;
-  for (const unsigned int volume : {1, 2})
-  {
-    BodyParameters body;
-    body.mesh_file               = SOURCE_DIR "/../meshes/paraboloid.msh";
-    body.volume_ids              = {volume};
-    body.material.law            = MaterialParameters::Law::linear_elastic;
-    body.material.youngs_modulus = 1000;
-    body.material.poissons_ratio = 0.3;
-    p.bodies.push_back(body);
-  }
-  p.boundary_conditions = {hold("x", region(0, {10, 16}), {0}),
-                           hold("y", region(0, {12, 18}), {1}),
-                           hold("bottom", region(2, {20}), {0, 1, 2}),
-                           drive("top", region(1, {15}), 2, "-0.02*t")};
-  p.contact_pairs       = {pair(region(1, {14}), region(2, {21}))};
-  p.output.vtu_interval = 0;
+  Parameters p = paraboloid_on_block("0.02");
   use_loops(p); // the loops may cycle, not their merged iteration
 
   double nodal = 0.;
