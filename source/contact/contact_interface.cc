@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace Nodus
@@ -26,8 +27,8 @@ namespace Nodus
       : pairs_(pairs)
       , rigid_bodies_(rigid_bodies)
       , now_(now)
-      , surfaces_(pairs, bodies, dof_handler, mapping)
-      , status_(pairs, surfaces_, stiffness, strategy, now.statuses)
+      , surfaces_(pairs, bodies, dof_handler, mapping, stiffness)
+      , status_(pairs, surfaces_, softer_sides(pairs, stiffness), strategy, now.statuses)
       , assembler_(surfaces_, pairing_, jump_, weights_, status_)
   {
     std::vector<unsigned int> rigid_numbers(bodies.size(), dealii::numbers::invalid_unsigned_int);
@@ -42,6 +43,21 @@ namespace Nodus
     now_.jump.assign(surfaces_.n_sites(), Vector3());
     now_.on_new_mesh = false;
     now_.stuck.assign(surfaces_.n_sites(), 0);
+  }
+
+  std::vector<double> ContactInterface::softer_sides(const std::vector<ContactPairParameters> &pairs,
+                                                     const std::vector<double>                &stiffness)
+  {
+    std::vector<double> softer;
+    for (const auto &pair : pairs)
+    {
+      softer.push_back(std::numeric_limits<double>::max());
+      for (const RegionParameters *const side : {&pair.slave, &pair.master})
+        for (const unsigned int body : side->bodies)
+          if (side == &pair.slave || !pair.has_rigid_master())
+            softer.back() = std::min(softer.back(), stiffness[body - 1]);
+    }
+    return softer;
   }
 
   void ContactInterface::begin_attempt()

@@ -29,8 +29,8 @@ namespace Nodus
   class ContactInterface
   {
   public:
-    /// @p stiffness: Young's modulus of the softer side of each pair [pressure]. The references outlive the object;
-    /// @p now is set to that before the first pairing.
+    /// @p stiffness: Young's modulus of each body [pressure]. The references outlive the object; @p now is set to that
+    /// before the first pairing.
     ContactInterface(const std::vector<ContactPairParameters> &pairs,
                      const std::vector<double>                &stiffness,
                      const StrategyParameters                 &strategy,
@@ -39,6 +39,10 @@ namespace Nodus
                      const dealii::Mapping<dim>               &mapping,
                      const RigidBodies                        &rigid_bodies,
                      InterfaceState                           &now);
+
+    /// Young's modulus of the softer side of each pair [pressure].
+    static std::vector<double> softer_sides(const std::vector<ContactPairParameters> &pairs,
+                                            const std::vector<double>                &stiffness);
 
     /// Where rigid masters are in the increment from @p begin to @p end, which pairs act in it, and which part of the
     /// interference of each is pressed out by its end.

@@ -32,10 +32,11 @@ namespace Nodus
       end_of_rank_.push_back(n + (end_of_rank_.empty() ? 0 : end_of_rank_.back()));
   }
 
-  void FaceDirectory::collect(const Region               &region,
-                              const dealii::Mapping<dim> &mapping,
-                              const unsigned int          pair,
-                              const unsigned int          side)
+  void FaceDirectory::collect(const Region                         &region,
+                              const dealii::Mapping<dim>           &mapping,
+                              const unsigned int                    pair,
+                              const unsigned int                    side,
+                              const std::map<unsigned int, Region> &elsewhere)
   {
     const auto        &fe             = dof_handler_.get_fe();
     const auto        &base           = fe.base_element(0);
@@ -60,6 +61,9 @@ namespace Nodus
             record.rank        = rank_;
             record.cell        = cell->active_cell_index();
             record.body        = cell->material_id() + 1;
+            for (const auto &[number, other] : elsewhere)
+              if (other.selects_face(mapping, cell, f))
+                record.elsewhere.push_back(number);
             for (unsigned int i = 0; i < base.n_dofs_per_cell(); ++i)
             {
               const auto position = [&](const unsigned int axis)

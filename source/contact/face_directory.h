@@ -34,6 +34,9 @@ namespace Nodus
     unsigned int body;      ///< its number, from 1
     DoFIndex     across[4]; ///< first degrees of freedom of the corners of the face across the cell, ...
     double       X_across[4][dim]; ///< ... and where they are
+    /// Of pairs that touch themselves: the sides of other pairs, numbered 2 pair + side, that the face belongs to and
+    /// that come before this one.
+    std::vector<unsigned int> elsewhere;
 
     /// Node n hangs; one of the nodes that it follows.
     struct Follower
@@ -62,7 +65,7 @@ namespace Nodus
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)
     {
-      archive &dofs &X &orientation &pair &side &rank &number &cell &body &across &X_across &followers;
+      archive &dofs &X &orientation &pair &side &rank &number &cell &body &across &X_across &elsewhere &followers;
     }
     bool operator<(const FaceRecord &other) const
     {
@@ -76,8 +79,12 @@ namespace Nodus
   public:
     FaceDirectory(const dealii::DoFHandler<dim> &dof_handler, unsigned int n_pairs);
 
-    /// Adds the faces of owned cells in @p region.
-    void collect(const Region &region, const dealii::Mapping<dim> &mapping, unsigned int pair, unsigned int side);
+    /// Adds the faces of owned cells in @p region. @p elsewhere: what becomes FaceRecord::elsewhere of those in it.
+    void collect(const Region                         &region,
+                 const dealii::Mapping<dim>           &mapping,
+                 unsigned int                          pair,
+                 unsigned int                          side,
+                 const std::map<unsigned int, Region> &elsewhere = {});
     /// Numbers the faces and tells the owners of their nodes of them. Collective, after the last collect().
     void publish();
 

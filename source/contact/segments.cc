@@ -201,7 +201,7 @@ namespace Nodus
         search_.candidates(swept_box(corner, plane.normal, reach_), candidates);
         for (const unsigned int m : candidates)
           if (self_ == nullptr ||
-              (self_->apart(f_, m) && !self_->is_beyond(m, plane.origin, plane.normal, self_->most_visible(f_))))
+              (self_->may_touch(f_, m) && !self_->is_beyond(m, plane.origin, plane.normal, self_->most_visible(f_))))
             for (unsigned int cell = 0; cell < n_cells(degree_); ++cell)
               add_overlap(window, plane, middle, cell_area, m, cell);
       }

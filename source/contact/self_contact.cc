@@ -7,8 +7,9 @@ namespace Nodus
 {
   namespace
   {
-    /// A face that is smaller than another one by more than this is the finer one.
-    constexpr double finer = 0.8;
+    /// A face that is smaller than another one by more than this is the finer one, a body with less stiffness the
+    /// softer.
+    constexpr double finer = 0.8, softer = 0.8;
     /// Faces of one body and size have an order by where they look, and by where they are, in a direction that lies
     /// along no axis of a model.
     const Vector3    direction({0.80, 0.53, 0.28});
@@ -77,7 +78,7 @@ namespace Nodus
 
   SelfContact::Role SelfContact::role(const ContactSurfaces &surfaces, const SurfaceFace &face)
   {
-    Role role{true, 0., face.body, 0., 0., face.number};
+    Role role{true, 0., surfaces.stiffness(face), face.body, 0., 0., face.number};
     for (const unsigned int node : face.nodes)
       for (unsigned int c = 0; c < dim; ++c)
         role.held = role.held && surfaces.fixed(node, c);
@@ -99,6 +100,8 @@ namespace Nodus
       return other.held;
     if (size < finer * other.size || other.size < finer * size)
       return size < other.size;
+    if (stiffness < softer * other.stiffness || other.stiffness < softer * stiffness)
+      return stiffness < other.stiffness;
     if (body != other.body)
       return body < other.body;
     if (std::abs(looks - other.looks) > same_direction)
@@ -159,8 +162,8 @@ namespace Nodus
     if (rules_.is_beyond(m, x, n, OwnNode::visible_depth * thickness_))
       return false;
     if (faces_ == nullptr)
-      return rules_.apart(face_, m);
-    return std::all_of(faces_->begin(), faces_->end(), [&](const unsigned int f) { return rules_.apart(f, m); });
+      return rules_.may_touch(face_, m);
+    return std::all_of(faces_->begin(), faces_->end(), [&](const unsigned int f) { return rules_.may_touch(f, m); });
   }
 
   bool SelfContact::Seeker::is_slave(const unsigned int m) const

@@ -25,10 +25,12 @@ namespace Nodus
     /// Cosine between normals up from which faces do not look at each other.
     static constexpr double averted_cosine = -0.25881905;
 
-    /// Whether slave face @p f and master face @p m have no node in common: neighbours do not touch.
-    bool apart(unsigned int f, unsigned int m) const
+    /// Whether slave face @p f and master face @p m have no node in common, for neighbours do not touch, and are not
+    /// left to another pair, or to none.
+    bool may_touch(unsigned int f, unsigned int m) const
     {
-      return !meet(slave_nodes_[f], master_nodes_[m]);
+      return !meet(slave_nodes_[f], master_nodes_[m]) &&
+             !meet_elsewhere(slave_.face(f).elsewhere, master_.face(m).elsewhere);
     }
     /// Whether @p f is the slave of @p m where they touch (eq. O2); one of both is.
     bool is_slave(const unsigned int f, const unsigned int m) const
@@ -90,8 +92,9 @@ namespace Nodus
     /// What decides who is slave, in the order of the members (eq. O2).
     struct Role
     {
-      bool         held; ///< no node of it can move
-      double       size; ///< reference configuration [length]
+      bool         held;      ///< no node of it can move
+      double       size;      ///< reference configuration [length]
+      double       stiffness; ///< Young's modulus of the body
       unsigned int body;
       double       looks, place; ///< normal and middle along one direction, reference configuration
       unsigned int number;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 namespace Nodus
 {
@@ -21,12 +22,43 @@ namespace Nodus
     constexpr double relative_moves = 0.2;
     /// Walls thicker than so many mean faces are as good as this: surfaces look for themselves half as far.
     constexpr double wall_reach = 4.;
+
+    Region side_region(const std::vector<ContactPairParameters> &pairs,
+                       const unsigned int                        pair,
+                       const SurfaceSide                         side,
+                       const Bodies                             &bodies)
+    {
+      const bool slave = side == slave_side;
+      return Region(slave ? pairs[pair].slave : pairs[pair].master,
+                    bodies,
+                    pair_label(pairs, pair) + (slave ? ", slave" : ", master"));
+    }
+
+    /// The sides of what comes before a pair that touches itself, numbered as in FaceRecord::elsewhere: of pairs that
+    /// do not and of later ones; behind the pairs, of bodies that it excludes.
+    std::map<unsigned int, Region>
+    sides_before(const std::vector<ContactPairParameters> &pairs, const unsigned int pair, const Bodies &bodies)
+    {
+      std::map<unsigned int, Region> sides;
+      if (!pairs[pair].self_contact)
+        return sides;
+      for (unsigned int q = 0; q < pairs.size(); ++q)
+        if (!pairs[q].has_rigid_master() && (!pairs[q].self_contact || q > pair))
+          for (const SurfaceSide side : {slave_side, master_side})
+            sides.emplace(2 * q + side, side_region(pairs, q, side, bodies));
+      unsigned int number = 2 * pairs.size();
+      for (const auto &[one, other] : pairs[pair].excluded_bodies)
+        for (const unsigned int body : {one, other})
+          sides.emplace(number++, Region({{body}, {}, "1"}, bodies, pair_label(pairs, pair) + ", excluded"));
+      return sides;
+    }
   } // namespace
 
   ContactSurfaces::ContactSurfaces(const std::vector<ContactPairParameters> &pairs,
                                    const Bodies                             &bodies,
                                    const dealii::DoFHandler<dim>            &dof_handler,
-                                   const dealii::Mapping<dim>               &mapping)
+                                   const dealii::Mapping<dim>               &mapping,
+                                   std::vector<double>                       stiffness)
       : pairs_(pairs)
       , communicator_(communicator_of(dof_handler))
       , degree_(dof_handler.get_fe().degree)
@@ -35,11 +67,13 @@ namespace Nodus
       , slave_faces_(pairs.size())
       , master_faces_(pairs.size())
       , acting_(pairs.size(), true)
+      , stiffness_(std::move(stiffness))
   {
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
+      const std::map<unsigned int, Region> elsewhere = sides_before(pairs, p, bodies);
       sites_.has_points.push_back(pairs[p].scheme == ContactPairParameters::Scheme::integration_point);
-      directory_.collect(Region(pairs[p].slave, bodies, pair_label(pairs, p) + ", slave"), mapping, p, slave_side);
+      directory_.collect(side_region(pairs, p, slave_side, bodies), mapping, p, slave_side, elsewhere);
       rigid_masters_.push_back(
           pairs[p].has_rigid_master()
               ? std::make_unique<RigidSurface>(pairs[p].master_surface,
@@ -47,7 +81,7 @@ namespace Nodus
                                                pairs[p].surface == ContactPairParameters::Surface::smoothed)
               : nullptr);
       if (!rigid_masters_[p])
-        directory_.collect(Region(pairs[p].master, bodies, pair_label(pairs, p) + ", master"), mapping, p, master_side);
+        directory_.collect(side_region(pairs, p, master_side, bodies), mapping, p, master_side, elsewhere);
     }
     directory_.publish();
     throw_everywhere<InputError>(repeated_slave_face(), communicator_);
@@ -141,6 +175,7 @@ namespace Nodus
     if (pairs_[record.pair].self_contact)
       for (unsigned int n = 0; n < 4; ++n)
         face.across[n] = node(record.across[n]);
+    face.elsewhere = record.elsewhere;
     for (const auto &follower : record.followers)
     {
       if (face.hanging.empty() || face.hanging.back().n != follower.n)
@@ -171,28 +206,6 @@ namespace Nodus
         face.basis[follower.n * face.slaves.size() + column(slave_number(record.pair, node(follower.dof)))] =
             follower.share;
     return face;
-  }
-
-  void ContactSurfaces::measure_faces()
-  {
-    const std::vector<Point> X         = positions(std::vector<Vector3>(nodes_.size()));
-    const auto               mean_size = [&](const std::vector<std::vector<SurfaceFace>> &faces, const SurfaceSide side)
-    {
-      std::vector<double> sizes(n_pairs(), 0.);
-      for (unsigned int p = 0; p < n_pairs(); ++p)
-        for (const auto &face : faces[p])
-          if (face.owner == rank_)
-            sizes[p] += std::sqrt(FaceGeometry(face, FaceShape(degree_, 0.5, 0.5), X).area_vector().norm());
-      dealii::Utilities::MPI::sum(sizes, communicator_, sizes);
-      for (unsigned int p = 0; p < n_pairs(); ++p)
-        sizes[p] /= std::max(directory_.size(p, side), 1u);
-      return sizes;
-    };
-    face_size_        = mean_size(slave_faces_, slave_side);
-    master_face_size_ = mean_size(master_faces_, master_side);
-    for (unsigned int p = 0; p < n_pairs(); ++p)
-      if (rigid_masters_[p])
-        master_face_size_[p] = face_size_[p];
   }
 
   bool ContactSurfaces::has_rigid_masters() const

@@ -37,21 +37,6 @@ namespace Nodus
     Vector3                                      offset;
   };
 
-  /// What carries multipliers: a node on the slave side of a pair. On an edge where the slave surfaces of two pairs
-  /// meet there is one for each of them.
-  struct SlaveNode
-  {
-    unsigned int node; ///< index into ContactSurfaces::nodes()
-    unsigned int pair;
-  };
-
-  /// An integration point of a slave face with statuses of its own (scheme `integration point`).
-  struct SlavePoint
-  {
-    unsigned int pair, face;      ///< face: index into slave_faces(pair)
-    double       xi, eta, weight; ///< of the rule on [0, 1]^2
-  };
-
   /// How messages call a pair: its number, and its name when it has one.
   std::string pair_label(const std::vector<ContactPairParameters> &pairs, unsigned int pair);
 
@@ -79,10 +64,12 @@ namespace Nodus
   public:
     /// Collective. @p pairs must outlive it. @throws InputError on all ranks: a side without faces, a face that is
     /// slave twice, slave surfaces of two pairs that meet without an edge, a face on both sides of a pair.
+    /// @p stiffness: Young's modulus of each body [pressure]; empty: all the same.
     ContactSurfaces(const std::vector<ContactPairParameters> &pairs,
                     const Bodies                             &bodies,
                     const dealii::DoFHandler<dim>            &dof_handler,
-                    const dealii::Mapping<dim>               &mapping);
+                    const dealii::Mapping<dim>               &mapping,
+                    std::vector<double>                       stiffness = {});
 
     unsigned int degree() const
     {
@@ -100,6 +87,10 @@ namespace Nodus
     bool acts(const unsigned int pair) const
     {
       return acting_[pair];
+    }
+    double stiffness(const SurfaceFace &face) const
+    {
+      return stiffness_.empty() ? 0. : stiffness_[face.body - 1];
     }
     /// The first are those of slave_nodes(), in their order, then what else is on slave faces.
     const std::vector<SurfaceNode> &nodes() const
@@ -392,7 +383,8 @@ namespace Nodus
     Held                                       held_;
     BlockLayout                                layout_;
     SurfaceGather                              gather_;
-    std::vector<char>                          acting_; ///< of each pair
+    std::vector<char>                          acting_;    ///< of each pair
+    std::vector<double>                        stiffness_; ///< of each body
   };
 } // namespace Nodus
 

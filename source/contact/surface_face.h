@@ -3,6 +3,7 @@
 
 #include <nodus/base/types.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -21,6 +22,8 @@ namespace Nodus
 
     /// Of pairs with self-contact: the corners of the face across the cell, in the order of this one's.
     std::array<unsigned int, 4> across = {};
+    /// ... and what the face is in pairs that come before this one (FaceRecord::elsewhere).
+    std::vector<unsigned int> elsewhere = {};
 
     /// A node of the face that hangs, and what it follows: indices into ContactSurfaces::nodes(), and weights.
     struct Follower
@@ -54,6 +57,29 @@ namespace Nodus
       return result;
     }
   };
+
+  /// What carries multipliers: a node on the slave side of a pair. On an edge where the slave surfaces of two pairs
+  /// meet there is one for each of them.
+  struct SlaveNode
+  {
+    unsigned int node; ///< index into ContactSurfaces::nodes()
+    unsigned int pair;
+  };
+
+  /// An integration point of a slave face with statuses of its own (scheme `integration point`).
+  struct SlavePoint
+  {
+    unsigned int pair, face;      ///< face: index into slave_faces(pair)
+    double       xi, eta, weight; ///< of the rule on [0, 1]^2
+  };
+
+  /// Whether faces, or nodes, of a surface that touches itself meet in a pair that comes before it, one as slave and
+  /// the other as master there (FaceRecord::elsewhere).
+  inline bool meet_elsewhere(const std::vector<unsigned int> &a, const std::vector<unsigned int> &b)
+  {
+    return std::any_of(
+        a.begin(), a.end(), [&](const unsigned int side) { return std::count(b.begin(), b.end(), side ^ 1u) > 0; });
+  }
 
   /// Values and derivatives of the face shape functions at one point.
   struct FaceShape

@@ -200,6 +200,28 @@ namespace Nodus
     layout_.owned[2].add_range(2 * first, 2 * (first + sites_.n_owned_nodes));
   }
 
+  void ContactSurfaces::measure_faces()
+  {
+    const std::vector<Point> X         = positions(std::vector<Vector3>(nodes_.size()));
+    const auto               mean_size = [&](const std::vector<std::vector<SurfaceFace>> &faces, const SurfaceSide side)
+    {
+      std::vector<double> sizes(n_pairs(), 0.);
+      for (unsigned int p = 0; p < n_pairs(); ++p)
+        for (const auto &face : faces[p])
+          if (face.owner == rank_)
+            sizes[p] += std::sqrt(FaceGeometry(face, FaceShape(degree_, 0.5, 0.5), X).area_vector().norm());
+      dealii::Utilities::MPI::sum(sizes, communicator_, sizes);
+      for (unsigned int p = 0; p < n_pairs(); ++p)
+        sizes[p] /= std::max(directory_.size(p, side), 1u);
+      return sizes;
+    };
+    face_size_        = mean_size(slave_faces_, slave_side);
+    master_face_size_ = mean_size(master_faces_, master_side);
+    for (unsigned int p = 0; p < n_pairs(); ++p)
+      if (rigid_masters_[p])
+        master_face_size_[p] = face_size_[p];
+  }
+
   /// Message for a face of this rank that is slave in two pairs, or nothing.
   std::string ContactSurfaces::repeated_slave_face() const
   {

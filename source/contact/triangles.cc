@@ -232,6 +232,8 @@ namespace Nodus
       for (unsigned int n = 0; n < face.nodes.size(); ++n)
         if (!own_[face.nodes[n]].nodes.empty())
         {
+          auto &elsewhere = own_[face.nodes[n]].elsewhere;
+          elsewhere.insert(elsewhere.end(), face.elsewhere.begin(), face.elsewhere.end());
           double      &visible = own_[face.nodes[n]].visible;
           const double xi = double(n % (degree + 1)) / degree, eta = double(n / (degree + 1)) / degree;
           visible = std::min(
@@ -260,6 +262,12 @@ namespace Nodus
         if (std::count(own_[n].nodes.begin(), own_[n].nodes.end(), node) > 0)
           return true;
     return false;
+  }
+
+  /// What looks for its own wall meets what it does not touch.
+  bool Triangles::may_meet(const Triangle &triangle, const OwnNode &own) const
+  {
+    return !is_at(triangle, own) && (own.least > 0. || !meet_elsewhere(own.elsewhere, triangle.face->elsewhere));
   }
 
   Triangles::~Triangles()                     = default;
@@ -293,7 +301,7 @@ namespace Nodus
 
   bool Triangles::counts(const Triangle &triangle, const Height &height, const OwnNode &own) const
   {
-    if (height.normal * own.outward > SelfContact::averted_cosine || is_at(triangle, own))
+    if (height.normal * own.outward > SelfContact::averted_cosine || !may_meet(triangle, own))
       return false;
     if (own.least > 0.)
       return height.behind && height.distance > own.least;
@@ -358,7 +366,7 @@ namespace Nodus
       {
         const auto &n   = triangles_[leaf->second].nodes;
         const auto  way = [&](const unsigned int v) { return Way{{before[n[v]], x_[n[v]]}}; };
-        if (!own[w].nodes.empty() && is_at(triangles_[leaf->second], own[w]))
+        if (!own[w].nodes.empty() && !may_meet(triangles_[leaf->second], own[w]))
           continue;
         for (const Crossing &crossing : find_crossings(ways[w], way(0), way(1), way(2)))
           result[w].push_back(crossing);

@@ -27,6 +27,8 @@ namespace Nodus
   {
     std::vector<DoFIndex> nodes;   ///< first degrees of freedom of it and of those that it follows; empty: no such
     Vector3               outward; ///< unit
+    /// What the faces at it are in pairs that come before this one: what meets there does not count either.
+    std::vector<unsigned int> elsewhere;
     /// Depth up to which faces that have come in count [length]; where @p least is given it looks for the wall behind
     /// itself instead, for faces that are farther behind it than that.
     double visible = 0., least = 0.;
@@ -36,7 +38,7 @@ namespace Nodus
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)
     {
-      archive &nodes &outward &visible &least;
+      archive &nodes &outward &elsewhere &visible &least;
     }
   };
 
@@ -116,6 +118,7 @@ namespace Nodus
     Height height(const Triangle &triangle, const Point &p) const;
     void know_nodes(const std::vector<SurfaceFace> &faces, unsigned int degree, const std::vector<SurfaceNode> &nodes);
     bool is_at(const Triangle &triangle, const OwnNode &own) const;
+    bool may_meet(const Triangle &triangle, const OwnNode &own) const;
     bool counts(const Triangle &triangle, const Height &height, const OwnNode &own) const;
 
     const std::vector<Point> &x_;

@@ -38,6 +38,12 @@ namespace Nodus
       return false;
     }
 
+    /// muParser takes '&&' and a name right behind it for one operator.
+    bool runs_into_name(const std::string &expression)
+    {
+      return std::regex_search(expression, std::regex(R"((&&|\|\|)[A-Za-z])"));
+    }
+
     /// deal.II's random numbers differ from one evaluation to the next, and from rank to rank.
     bool is_random(const std::string &expression)
     {
@@ -51,6 +57,8 @@ namespace Nodus
       return "a ',' outside of a function; several expressions are separated by ';'";
     if (assigns(expression))
       return "a '=' that is an assignment; '==' compares";
+    if (runs_into_name(expression))
+      return "'&&' or '||' without a blank behind it; write 'x>1 && y<2'";
     if (is_random(expression))
       return "random numbers, which are others at each evaluation";
     // deal.II prints its own copy of the complaint to std::cerr.

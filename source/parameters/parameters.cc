@@ -1,3 +1,4 @@
+#include "parameters/general_contact.h"
 #include "parameters/generators.h"
 #include "parameters/named_ids.h"
 #include "parameters/parameter_file.h"
@@ -355,7 +356,13 @@ namespace Nodus
     if (parameters.output.results_folder.empty())
       parameters.output.results_folder = (std::filesystem::path("results") / path.stem()).string();
 
+    for (auto &pair : parameters.contact_pairs)
+      if (pair.self_contact)
+        complete_general_contact(pair.slave, parameters.bodies);
     resolve_names(parameters, text);
+    for (unsigned int p = 0; p < parameters.contact_pairs.size(); ++p)
+      resolve_excluded_bodies(
+          parameters.contact_pairs[p], parameters.bodies, text, "Contact pair " + std::to_string(p + 1));
     for (auto &pair : parameters.contact_pairs)
       if (pair.self_contact && !pair.has_rigid_master() && pair.master.bodies.empty() && !pair.master.has_ids() &&
           pair.master.where.empty())

@@ -250,7 +250,8 @@ namespace Nodus
                         "has several rigid bodies that forces drive; give each of them a contact pair of its own");
       section.require(!pair.self_contact || !some(pair.slave, rigid),
                       "Slave body",
-                      "has a rigid body, which cannot be slave; give it a contact pair of its own, as master");
+                      "has a rigid body, which cannot be slave; name the others, and give the rigid one a contact pair "
+                      "of its own, as master");
       section.require(!some(pair.slave, rigid) || !(pair.has_rigid_master() || some(pair.master, rigid)),
                       "Slave body",
                       "is rigid, as is the master: neither can give way; remove the pair");
@@ -289,7 +290,8 @@ namespace Nodus
       const ContactPairParameters &pair = contact_pairs[i];
       check_bodies(section, pair, bodies);
       for (unsigned int j = 0; j < i; ++j)
-        section.require(!share_faces(contact_pairs[i].slave, contact_pairs[j].slave),
+        section.require(pair.self_contact || contact_pairs[j].self_contact ||
+                            !share_faces(contact_pairs[i].slave, contact_pairs[j].slave),
                         "Slave boundary ids",
                         "names faces that are already slaves of 'Contact pair " + std::to_string(j + 1) +
                             "'; a face can be slave only once, of a master that may have several bodies");

@@ -319,6 +319,10 @@ namespace Nodus
     section.require(pair.slave.chooses_faces(),
                     "Slave boundary ids",
                     "is missing; give the boundary ids or names of the faces in contact, or 'Where' they are");
+    section.require(
+        pair.self_contact || (pair.excluded_bodies.empty() && pair.excluded_names.empty()),
+        "Excluded bodies",
+        "has no meaning without 'Self contact = true'; remove it, or leave the bodies out of the two sides");
     check_master(section, pair, n_bodies);
 
     using Scheme = ContactPairParameters::Scheme;

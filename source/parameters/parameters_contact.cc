@@ -1,3 +1,4 @@
+#include "parameters/general_contact.h"
 #include "parameters/named_ids.h"
 #include "parameters/parameter_file.h"
 #include "parameters/parameter_keys.h"
@@ -303,8 +304,12 @@ namespace Nodus
     prm.add_parameter("Self contact",
                       pair.self_contact,
                       "Whether the slave faces touch each other [-], be they of one body or of several; then there is "
-                      "no master. Of two faces that meet that one is slave which moves while the other is held, else "
-                      "the finer one, else that of the body with the lower number.");
+                      "no master. Without a Slave body that is general contact: of all bodies, and without ids of all "
+                      "outer faces. Of two faces that meet that one is slave which moves while the other is held, else "
+                      "the finer one, else that of the softer body, else of the one with the lower number. What is "
+                      "slave and master of another "
+                      "pair is left to that pair at all times, of two pairs with Self contact to the later one.");
+    add_excluded_bodies(prm, pair);
     add_master_surface(prm, pair.master_surface);
     add_scheme(prm, pair);
     add_contact_laws(prm, pair);

@@ -128,7 +128,7 @@ namespace Nodus
   void Judge::set_up()
   {
     contact_ = std::make_unique<ContactInterface>(model_.parameters.contact_pairs,
-                                                  model_.pair_stiffness(),
+                                                  model_.stiffness(),
                                                   model_.parameters.strategy,
                                                   model_.bodies,
                                                   model_.dof_handler,

@@ -48,7 +48,7 @@ namespace Nodus
           adaptivity.bulk_weight, model_.dof_handler, *model_.solid, model_.materials, u, stress, indicator);
       if (touches)
         add_contact_error(adaptivity.contact_weight,
-                          model_.pair_stiffness(),
+                          ContactInterface::softer_sides(model_.parameters.contact_pairs, model_.stiffness()),
                           contact.surfaces(),
                           *contact.geometry(),
                           contact.fields(),

@@ -107,7 +107,7 @@ namespace Nodus
     contact.reset(); // what it refers to is made anew
     rigid_bodies.find_nodes(dof_handler, *mapping);
     contact = std::make_unique<ContactInterface>(parameters.contact_pairs,
-                                                 pair_stiffness(),
+                                                 stiffness(),
                                                  parameters.strategy,
                                                  bodies,
                                                  dof_handler,
@@ -228,18 +228,12 @@ namespace Nodus
     solid->start_from(states.now.history);
   }
 
-  std::vector<double> Model::pair_stiffness() const
+  std::vector<double> Model::stiffness() const
   {
-    std::vector<double> stiffness;
-    for (const auto &pair : parameters.contact_pairs)
-    {
-      stiffness.push_back(std::numeric_limits<double>::max());
-      for (const RegionParameters *const side : {&pair.slave, &pair.master})
-        for (const unsigned int body : side->bodies)
-          if (side == &pair.slave || !pair.has_rigid_master())
-            stiffness.back() = std::min(stiffness.back(), materials[body - 1]->youngs_modulus());
-    }
-    return stiffness;
+    std::vector<double> of_bodies;
+    for (const auto &material : materials)
+      of_bodies.push_back(material->youngs_modulus());
+    return of_bodies;
   }
 
   Vector Model::with_ghosts(const Vector &v) const

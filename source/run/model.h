@@ -50,8 +50,8 @@ namespace Nodus
     /// The state at hand becomes the one that the increment began with, and what refers to it follows. Collective.
     void roll_back(States &states);
 
-    /// Young's modulus of the softer side of each pair.
-    std::vector<double> pair_stiffness() const;
+    /// Young's modulus of each body [pressure].
+    std::vector<double> stiffness() const;
     /// A copy of a fully distributed vector of displacements with ghost entries, which copies of it do not have.
     /// Collective.
     Vector with_ghosts(const Vector &v) const;

@@ -215,19 +215,22 @@ namespace Nodus
       double             adjustment_distance = 0.; ///< gaps up to here are adjusted, too [length]
       double             overclosure_limit   = 0.; ///< [length]; 0 = automatic
     };
-    std::string           name;
-    RegionParameters      slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
-    RegionParameters      master; ///< keys "Master body", ...; that of the slave where the surface touches itself
-    bool                  self_contact                = false;
-    ContactLaw            contact_law                 = ContactLaw::unilateral;
-    FrictionLaw           friction_law                = FrictionLaw::coulomb;
-    double                friction_coefficient        = 0.;
-    double                second_friction_coefficient = 0.; ///< across the friction direction; 0: the same
-    Vector3               friction_direction;               ///< of the first coefficient; zero: there is only one
-    std::string           friction_factor = "1";            ///< of reference x, y, z, slip rate v and time t
-    double                shear_limit     = 0.;             ///< [pressure]; 0: none
-    double                elastic_slip    = 0.;             ///< at which friction reaches its limit [length]
-    PressureGapParameters pressure_gap;
+    std::string      name;
+    RegionParameters slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
+    RegionParameters master; ///< keys "Master body", ...; that of the slave where the surface touches itself
+    bool             self_contact = false;
+    /// Pairs of bodies by number whose faces do not touch here, of a surface that touches itself, ...
+    std::vector<std::pair<unsigned int, unsigned int>> excluded_bodies;
+    std::vector<std::string> excluded_names; ///< ... as they are given; Parameters::read() makes numbers of them
+    ContactLaw               contact_law                 = ContactLaw::unilateral;
+    FrictionLaw              friction_law                = FrictionLaw::coulomb;
+    double                   friction_coefficient        = 0.;
+    double                   second_friction_coefficient = 0.; ///< across the friction direction; 0: the same
+    Vector3                  friction_direction;               ///< of the first coefficient; zero: there is only one
+    std::string              friction_factor = "1";            ///< of reference x, y, z, slip rate v and time t
+    double                   shear_limit     = 0.;             ///< [pressure]; 0: none
+    double                   elastic_slip    = 0.;             ///< at which friction reaches its limit [length]
+    PressureGapParameters    pressure_gap;
 
     Chosen<Nodus::FrictionLaw> own_friction_law; ///< one that a plug-in has registered, or that the program makes
     double                     normal_augmentation_factor     = 1.;  ///< times E/h gives rho_n
