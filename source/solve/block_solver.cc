@@ -45,7 +45,7 @@ namespace Nodus
         std::ostringstream message;
         message << "Block solver: relative residual " << krylov.residual << " after " << krylov.iterations
                 << " iterations (wanted: " << tolerance
-                << "); use 'Type = direct' or change 'Augmentation factor' (good values lie between 1 and 10).";
+                << "); use 'Type = direct' or change 'Augmentation factor' (good values lie between 1 and 10)";
         throw SolverFailure(message.str(), SolverFailure::Kind::linear_solver);
       }
       return krylov.iterations;

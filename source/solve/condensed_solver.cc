@@ -50,7 +50,7 @@ namespace Nodus
     {
       std::ostringstream message;
       message << "Condensed solver: relative residual " << residual << " after " << iterations
-              << " iterations (wanted: " << tolerance << "); use 'Type = direct'.";
+              << " iterations (wanted: " << tolerance << "); use 'Type = direct'";
       throw SolverFailure(message.str(), SolverFailure::Kind::linear_solver);
     }
   } // namespace
