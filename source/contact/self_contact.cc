@@ -124,7 +124,8 @@ namespace Nodus
     for (unsigned int i = 0; i < 4; ++i)
     {
       through += value[i] * x[face.across[i]];
-      cells += value[i] * nodes[face.nodes[corner[i]]].cells_through;
+      const SurfaceNode &node = nodes[face.nodes[corner[i]]];
+      cells += value[i] * std::max(1., node.wall / node.X.distance(nodes[face.across[i]].X));
     }
     return cells * through.norm();
   }

@@ -110,7 +110,7 @@ namespace Nodus
     measure_faces();
     if (std::any_of(pairs.begin(), pairs.end(), [](const auto &pair) { return pair.self_contact; }))
     {
-      walls_ = cells_through_walls(*this, wall_reach);
+      walls_ = wall_thickness(*this, wall_reach);
       gather_walls();
     }
     if (dealii::Utilities::MPI::n_mpi_processes(communicator_) > 1 && n_pairs() > 0)
@@ -327,10 +327,10 @@ namespace Nodus
   {
     if (walls_.size() == 0)
       return;
-    std::vector<Vector3> cells;
-    gather(walls_, cells);
+    std::vector<Vector3> walls;
+    gather(walls_, walls);
     for (unsigned int i = 0; i < nodes_.size(); ++i)
-      nodes_[i].cells_through = std::max(1., cells[i][0]);
+      nodes_[i].wall = walls[i][0];
   }
 
   void ContactSurfaces::set_rigid_bodies(const std::vector<unsigned int> &numbers, const unsigned int n)

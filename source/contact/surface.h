@@ -27,9 +27,9 @@ namespace Nodus
   struct SurfaceNode
   {
     std::array<DoFIndex, dim> dofs;
-    Point                     X;                  ///< reference position
-    unsigned int              owner;              ///< rank that owns its degrees of freedom
-    double                    cells_through = 1.; ///< the wall behind it, see cells_through_walls()
+    Point                     X;         ///< reference position
+    unsigned int              owner;     ///< rank that owns its degrees of freedom
+    double                    wall = 0.; ///< thickness of the one behind it at the start, see wall_thickness() [length]
 
     /// Of a hanging node: what it follows, indices into ContactSurfaces::nodes() and weights, and how far its reference
     /// position is from theirs.
@@ -379,7 +379,7 @@ namespace Nodus
     std::vector<std::unique_ptr<RigidSurface>> rigid_masters_; ///< of each pair, or nullptr
     std::vector<double>                        face_size_, master_face_size_;
     Vector                                     fetched_at_; ///< displacement
-    Vector                                     walls_;      ///< empty, or cells_through_walls()
+    Vector                                     walls_;      ///< empty, or wall_thickness()
     Held                                       held_;
     BlockLayout                                layout_;
     SurfaceGather                              gather_;

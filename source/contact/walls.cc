@@ -7,7 +7,7 @@
 
 namespace Nodus
 {
-  Vector cells_through_walls(const ContactSurfaces &surfaces, const double faces)
+  Vector wall_thickness(const ContactSurfaces &surfaces, const double faces)
   {
     const std::vector<Point> X    = surfaces.reference_positions();
     const MPI_Comm           comm = surfaces.layout().communicator;
@@ -35,10 +35,9 @@ namespace Nodus
       const std::vector<NodeAnswer> answers = other.answers(questions);
       for (unsigned int i = 0; i < answers.size(); ++i)
       {
-        const unsigned int n    = triangles.nodes()[i];
-        const double       cell = questions[i].own.least / OwnNode::visible_depth;
-        count[n][0]             = 1.;
-        sum[n][0]               = std::max(1., std::min(answers[i].distance, farthest) / cell);
+        const unsigned int n = triangles.nodes()[i];
+        count[n][0]          = 1.;
+        sum[n][0]            = std::min(answers[i].distance, farthest);
       }
     }
     Vector walls, ranks;
