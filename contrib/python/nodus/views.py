@@ -85,13 +85,27 @@ def coordinates(points):
 
 
 def contact_zone(surface):
-    """Nodes of the faces with a node under pressure (of all when there is none), and the faces near them."""
+    """Nodes of the faces with a node under pressure (of all when there is none), and the faces near them that hang together
+    with these."""
     pressure = surface.fields["CPRESS"]
     loaded = pressure > 0.01 * pressure.max() if pressure.max() > 0 else np.ones(len(pressure), bool)
     nodes = np.unique(surface.cells[loaded[surface.cells].any((1, 2))])
     centre, size = surface.points[nodes].mean(0), np.ptp(surface.points[nodes], axis=0).max()
     distance = np.linalg.norm(surface.points[surface.cells].mean((1, 2)) - centre, axis=1)
-    return nodes, surface.cells[distance < 2 * size]
+    near = surface.cells[distance < 2 * size]
+    return nodes, near[_reached(near, nodes, len(pressure))]
+
+
+def _reached(faces, nodes, n_nodes):
+    """Which faces are reached from nodes, over nodes that faces share."""
+    seen = np.zeros(n_nodes, bool)
+    seen[nodes] = True
+    reached, before = np.zeros(len(faces), bool), -1
+    while reached.sum() > before:
+        before = reached.sum()
+        reached = seen[faces].any((1, 2))
+        seen[faces[reached]] = True
+    return reached
 
 
 def contact_view(surface, nodes, faces):
