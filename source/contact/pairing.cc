@@ -1,4 +1,5 @@
 #include "contact/pairing.h"
+#include "contact/segments.h"
 
 #include <algorithm>
 #include <cmath>
@@ -112,6 +113,17 @@ namespace Nodus
       }
     };
 
+    /// In a fold, the face that is nearest to a node may be another one than those that its gap is averaged over. What
+    /// their normals differ by fades in as faces fade out of averages; from there on the mean counts alone (eq. O4).
+    void agree_with_mean(const Vector3 &mean, Vector3 &normal, Projection &nearest)
+    {
+      const double part = facing(normal * mean).part;
+      normal            = part * normal + (1. - part) * mean;
+      normal /= normal.norm();
+      if (part == 0.)
+        nearest = Projection();
+    }
+
     /// Components in which the slave or the master part of a site's jump may move.
     std::array<bool, dim> free_motion(const ContactSurfaces &surfaces,
                                       const unsigned int     site,
@@ -196,6 +208,8 @@ namespace Nodus
           normal = -geometry.master[p].averaged_normal(face, xi, eta);
         else if (pairs[p].normal == Normal::master_facet)
           normal = -geometry.master[p].facet_normal(face, xi, eta, geometry.search[p].rim(face));
+        if (averages && paired && geometry.self[p])
+          agree_with_mean(averaged.row(s).normal, normal, pairing.master);
       }
       else if (rigid.found)
       {
