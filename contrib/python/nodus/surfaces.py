@@ -41,7 +41,7 @@ class Roles:
 
     def text(self, name):
         """The name and, in a line of its own, what it is and how much there is of it."""
-        faces, nodes = np.count_nonzero(self.faces[name]), len(self.nodes[name])
+        faces, nodes = int(np.count_nonzero(self.faces[name])), len(self.nodes[name])
         parts = [f"{faces} face{'s' * (faces != 1)}"] * bool(faces or not nodes)
         parts += [f"{nodes} {'more ' * bool(faces)}node{'s' * (nodes != 1)}"] * bool(nodes)
         whose, what = name.rsplit(", ", 1)
