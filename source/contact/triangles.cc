@@ -233,7 +233,9 @@ namespace Nodus
         if (!own_[face.nodes[n]].nodes.empty())
         {
           auto &elsewhere = own_[face.nodes[n]].elsewhere;
-          elsewhere.insert(elsewhere.end(), face.elsewhere.begin(), face.elsewhere.end());
+          for (const unsigned int side : face.elsewhere)
+            if (std::find(elsewhere.begin(), elsewhere.end(), side) == elsewhere.end())
+              elsewhere.push_back(side);
           double      &visible = own_[face.nodes[n]].visible;
           const double xi = double(n % (degree + 1)) / degree, eta = double(n / (degree + 1)) / degree;
           visible = std::min(

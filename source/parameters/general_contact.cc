@@ -43,7 +43,7 @@ namespace Nodus
     const auto number = [&](const std::string &text) -> unsigned int
     {
       for (unsigned int b = 1; b <= bodies.size(); ++b)
-        if ((text == std::to_string(b) || text == bodies[b - 1].name) && pair.slave.has_body(b))
+        if (!text.empty() && (text == std::to_string(b) || text == bodies[b - 1].name) && pair.slave.has_body(b))
           return b;
       return 0;
     };
