@@ -63,6 +63,12 @@ namespace Nodus
       return curved_->coarse_cell(cell);
     }
 
+    /// Whether @p cell has the shape of a cell of second order in a mesh file.
+    bool is_curved(const Triangulation::cell_iterator &cell) const
+    {
+      return curved_->covers(cell);
+    }
+
     /// Work of a cell (assembly, solution with multigrid) and, on top, of a slave face (search, jumps, couplings). That
     /// is 0.1 against 1.5 ms of a Hertz case with 40824 cells and 576 slave faces; but ranks without contact sleep
     /// while they wait for such work, and poll in that of cells: a quarter of it gives the least CPU in the same time.

@@ -17,6 +17,7 @@ namespace Nodus
     double friction = 0.; ///< dissipated by friction
     double plastic  = 0.; ///< dissipated by plastic flow
     double stabilisation = 0.; ///< dissipated by viscous stabilisation
+    double unresolved    = 0.; ///< what tolerances and round-off may take from the balance
 
     double imbalance() const
     {
@@ -25,12 +26,10 @@ namespace Nodus
     /// What came in and went where, as a scale.
     double throughput() const;
 
-    Energies &operator-=(const Energies &other);
-
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)
     {
-      archive &external &released &contact &stored &friction &plastic &stabilisation;
+      archive &external &released &contact &stored &friction &plastic &stabilisation &unresolved;
     }
   };
 } // namespace Nodus

@@ -88,8 +88,8 @@ namespace Nodus
         model.look_ahead(path.planned_times());
         model.set_conditions(path.at_hand().end);
         const auto pairing_timer = journal.profile.time(Phase::pairing);
-        for (const std::string &untied : model.begin_contact(states, 0.))
-          journal.console.line("warning: " + untied);
+        for (const std::string &sentence : model.begin_contact(states, 0.))
+          journal.console.line("warning: " + sentence);
       }
       results.find_points();
       folder.emplace(parameters.output.results_folder, model.communicator);
@@ -194,7 +194,7 @@ namespace Nodus
   {
     const Energies &energies = states.committed.energies;
     const double    part     = std::abs(energies.imbalance()) / energies.throughput();
-    if (!(part > large_imbalance)) // nor where there are none
+    if (!(part > large_imbalance) || std::abs(energies.imbalance()) <= energies.unresolved) // nor where there are none
       return;
     std::ostringstream text;
     text.precision(2);

@@ -32,18 +32,6 @@ namespace Nodus
                      std::abs(stabilisation)});
   }
 
-  Energies &Energies::operator-=(const Energies &other)
-  {
-    external -= other.external;
-    released -= other.released;
-    stabilisation -= other.stabilisation;
-    contact -= other.contact;
-    stored -= other.stored;
-    friction -= other.friction;
-    plastic -= other.plastic;
-    return *this;
-  }
-
   EnergyAudit::EnergyAudit(const Model &model, Journal &journal, States &states, const Equilibrium &equilibrium)
       : model_(model)
       , journal_(journal)
@@ -116,6 +104,8 @@ namespace Nodus
     now.energies.friction += of_increment.friction;
     now.energies.plastic = plastic;
     now.energies.stabilisation += of_increment.stabilisation;
+    of_increment.unresolved = unresolved(resolution);
+    now.energies.unresolved += of_increment.unresolved;
     if (!std::isfinite(of_increment.imbalance() + now.energies.imbalance()))
       throw SolverFailure(
           "forces and displacements are finite, but the energies of the increment are not: are the units "
@@ -123,7 +113,7 @@ namespace Nodus
           SolverFailure::Kind::not_finite);
     now.applied = applied;
     if (!increment.on_new_mesh()) // which stores another energy
-      warn(of_increment, work.creating, resolution);
+      warn(of_increment, work.creating);
   }
 
   EnergyAudit::ContactWork EnergyAudit::contact_work() const
@@ -196,10 +186,19 @@ namespace Nodus
     return work;
   }
 
-  /// @param creating sites of this rank where friction created energy. @param resolution of stored energies.
-  /// Collective.
-  void
-  EnergyAudit::warn(const Energies &increment, const std::vector<unsigned int> &creating, const double resolution) const
+  /// @param resolution of stored energies. Collective.
+  double EnergyAudit::unresolved(const double resolution) const
+  {
+    const double motion =
+        std::max(largest_difference(
+                     model_.contact->surfaces(), states_.now.unknowns.block(0), states_.committed.unknowns.block(0)),
+                 model_.length_scale);
+    return std::max(resolution,
+                    beyond_tolerance * model_.parameters.newton.force_tolerance * equilibrium_.forces().scale * motion);
+  }
+
+  /// @param creating sites of this rank where friction created energy. Collective.
+  void EnergyAudit::warn(const Energies &increment, const std::vector<unsigned int> &creating) const
   {
     const ContactInterface &contact  = *model_.contact;
     const Energies         &energies = states_.now.energies;
@@ -208,14 +207,8 @@ namespace Nodus
       journal_.console.remark("warning: friction creates energy at " + std::to_string(n_creating) + " sites, first " +
                               contact.loci(creating, 1).front() +
                               ": its force does not oppose the slip there; see energy.csv, and try smaller increments");
-    const double motion = std::max(
-        largest_difference(contact.surfaces(), states_.now.unknowns.block(0), states_.committed.unknowns.block(0)),
-        model_.length_scale);
     const double limit =
-        std::max({large_imbalance * increment.throughput(),
-                  small_part * energies.throughput(),
-                  resolution,
-                  beyond_tolerance * model_.parameters.newton.force_tolerance * equilibrium_.forces().scale * motion});
+        std::max({large_imbalance * increment.throughput(), small_part * energies.throughput(), increment.unresolved});
     if (std::abs(increment.imbalance()) <= limit)
       return;
 

@@ -30,7 +30,8 @@ namespace Nodus
     ContactWork contact_work() const;
     double      negligible_dissipation() const;
     double      work_of_stresses() const;
-    void        warn(const Energies &increment, const std::vector<unsigned int> &creating, double resolution) const;
+    double      unresolved(double resolution) const;
+    void        warn(const Energies &increment, const std::vector<unsigned int> &creating) const;
 
     const Model       &model_;
     Journal           &journal_;

@@ -83,8 +83,8 @@ namespace Nodus
     if (path.finished() || path.time() == 0. || !path.at_hand().begins_interval())
       return;
     parts_.model.set_conditions(path.target());
-    for (const std::string &untied : parts_.model.begin_contact(parts_.states, path.time()))
-      parts_.journal.console.remark("warning: " + untied);
+    for (const std::string &sentence : parts_.model.begin_contact(parts_.states, path.time()))
+      parts_.journal.console.remark("warning: " + sentence);
   }
 
   /// @returns false where the increment at hand has failed, and been halved. @throws SolverFailure where it cannot be.
@@ -346,9 +346,10 @@ namespace Nodus
   {
     for (unsigned int p = 0; p < never_closed_.size(); ++p)
       if (never_closed_[p] && first_ == 1)
-        parts_.journal.console.remark("contact pair " + std::to_string(p + 1) +
-                                      in_brackets(parts_.model.parameters.contact_pairs[p].name) +
-                                      " was open at the end of every increment; --validate tells its gaps");
+        parts_.journal.console.remark(
+            "warning: contact pair " + std::to_string(p + 1) +
+            in_brackets(parts_.model.parameters.contact_pairs[p].name) +
+            " was open at the end of every increment: are its surfaces the right ones? --validate tells its gaps");
   }
 
   /// Says how much of the balance of the increment is due to viscous stabilisation.

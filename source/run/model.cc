@@ -1,5 +1,6 @@
 #include "run/model.h"
 #include "bulk/rigid_material.h"
+#include "contact/facets.h"
 #include "contact/initial_overlap.h"
 #include "mesh/sides.h"
 #include "parallel/throw_everywhere.h"
@@ -186,8 +187,8 @@ namespace Nodus
       return {};
     State &now = states.now;
     Vector ended(now.reaction); // its map
-    ended                                 = 0.;
-    const std::vector<std::string> untied = contact->begin(now.unknowns, t, ended);
+    ended                             = 0.;
+    std::vector<std::string> warnings = contact->begin(now.unknowns, t, ended);
     now.reaction -= ended;
     now.applied -= ended;
     dealii::MappingQCache<dim> deformed(fe.degree);
@@ -195,8 +196,12 @@ namespace Nodus
       deformed.initialize(*mapping, dof_handler, with_ghosts(now.unknowns.block(0)), true);
     const dealii::Mapping<dim> &as_it_is = t > 0. ? deformed : *mapping;
     refuse_hidden_overlap(pairs, contact->surfaces(), bodies, as_it_is, now.unknowns.block(0), t);
+    if (t == 0.)
+      for (const std::string &sentence :
+           sides_that_stay_facets(parameters, contact->surfaces(), *contact->geometry(), bodies))
+        warnings.push_back(sentence);
     states.committed = now;
-    return untied;
+    return warnings;
   }
 
   std::vector<double> Model::resolved_interference(const double t) const

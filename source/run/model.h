@@ -39,9 +39,9 @@ namespace Nodus
     /// before the run has come so far; those of the first of them hold afterwards. Collective. @throws InputError
     void look_ahead(const std::vector<double> &times);
     /// Contact pairs that begin or cease to act at time @p t do so (ContactInterface::begin), in the states that an
-    /// increment from there begins with; what held the latter is released like a reaction. Sentences on what of tied
-    /// pairs is not tied. Collective. @throws InputError on every rank where the bodies overlap too much, and where
-    /// nothing of a tied pair is tied.
+    /// increment from there begins with; what held the latter is released like a reaction. Warnings: what of tied pairs
+    /// is not tied, curved sides that stay facets. Collective. @throws InputError on every rank where the bodies
+    /// overlap too much, and where nothing of a tied pair is tied.
     std::vector<std::string> begin_contact(States &states, double t);
     /// Part of the interference of each pair that is pressed out at time @p t.
     std::vector<double> resolved_interference(double t) const;

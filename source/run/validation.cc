@@ -379,10 +379,10 @@ namespace Nodus
   {
     describe_bodies(model, console);
     describe_conditions(model, console);
-    const std::vector<std::string> untied = model.begin_contact(states, 0.);
+    const std::vector<std::string> warnings = model.begin_contact(states, 0.);
     for (unsigned int pair = 0; pair < model.contact->surfaces().n_pairs(); ++pair)
       describe_pair(model, pair, console);
-    for (const std::string &sentence : untied)
+    for (const std::string &sentence : warnings)
       console.line("  warning: " + sentence);
     model.contact->residual().jump.resize(model.contact->surfaces().n_sites()); // nothing rubs yet
     model.impose(first);

@@ -73,8 +73,8 @@ namespace
     }
     void operator()(Energies &energies)
     {
-      auto &[external, released, contact, stored, friction, plastic, stabilisation] = energies;
-      for (double *energy : {&external, &released, &contact, &stored, &friction, &plastic, &stabilisation})
+      auto &[external, released, contact, stored, friction, plastic, stabilisation, unresolved] = energies;
+      for (double *energy : {&external, &released, &contact, &stored, &friction, &plastic, &stabilisation, &unresolved})
         f(*energy);
     }
     void operator()(Vector &v)
