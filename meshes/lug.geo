@@ -58,19 +58,21 @@ Line(27) = {27, 24};
 Curve Loop(21) = {25, 21, -26, -23};  Plane Surface(21) = {21};
 Curve Loop(22) = {26, 22, -27, -24};  Plane Surface(22) = {22};
 
-// Cells along each curve.
-Transfinite Curve {1, 4} = 17;
-Transfinite Curve {2, 3, 5, 6, 8} = 9;
-Transfinite Curve {10 : 13} = 9 Using Progression 1.15;
-Transfinite Curve {7, -9} = 9 Using Progression 1.15;
-Transfinite Curve {21, 22, 23, 24} = 13;
-Transfinite Curve {25 : 27} = 6;
+// Cells along each curve, plus one.
+Transfinite Curve {1, 4} = 13;
+Transfinite Curve {2, 3, 5, 6, 8} = 7;
+Transfinite Curve {10 : 13} = 7 Using Progression 1.2;
+Transfinite Curve {7, -9} = 8 Using Progression 1.2;
+Transfinite Curve {21, 22, 23, 24} = 11;
+Transfinite Curve {25 : 27} = 5;
 Transfinite Surface {:};
 Recombine Surface {:};
+Mesh.ElementOrder = 2; // curved cells, so that the hole is round however fine the mesh becomes
+Mesh.SecondOrderIncomplete = 1;
 
 // Layers of hexahedra. Of each extruded surface e[0] is the far face, e[1] the volume, e[2], ... the sides in the order of its loop.
 For s In {1 : 4}
-  e[] = Extrude {0, 0, thickness} { Surface{s}; Layers{5}; Recombine; };
+  e[] = Extrude {0, 0, thickness} { Surface{s}; Layers{4}; Recombine; };
   lug[] += e[1];
   If (s < 4)
     surface_of_the_hole[] += e[5];
@@ -85,7 +87,7 @@ For s In {1 : 4}
   EndIf
 EndFor
 For s In {21 : 22}
-  e[] = Extrude {0, 0, thickness + overhang} { Surface{s}; Layers{8}; Recombine; };
+  e[] = Extrude {0, 0, thickness + overhang} { Surface{s}; Layers{6}; Recombine; };
   pin[] += e[1];
   pulled[] += e[0];
   bolt[] += e[3];

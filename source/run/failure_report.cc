@@ -149,7 +149,11 @@ namespace Nodus
           const std::array<double, 2> slip = contact.slip(s);
           pair.sliding                     = std::max(pair.sliding, std::hypot(slip[0], slip[1]) / pair.face_size);
           if (!status.contact(s))
-            pair.penetration = std::max(pair.penetration, contact.distance(s) / pair.face_size);
+          {
+            const double distance = contact.distance(s) / pair.face_size;
+            pair.penetration      = std::max(pair.penetration, distance);
+            pair.gap              = std::min(pair.gap, -distance);
+          }
           continue;
         }
         ++pair.unpaired;
@@ -165,6 +169,7 @@ namespace Nodus
           *count = dealii::Utilities::MPI::sum(*count, p.model.communicator);
         for (double *value : {&pair.sliding, &pair.penetration})
           *value = dealii::Utilities::MPI::max(*value, p.model.communicator);
+        pair.gap = dealii::Utilities::MPI::min(pair.gap, p.model.communicator);
         for (const Point &X : first_of_all(lost[i], 1, p.model.communicator))
           pair.lost_X = X;
         pair.reach = contact.geometry() != nullptr ? contact.geometry()->reach[i] : 0.;

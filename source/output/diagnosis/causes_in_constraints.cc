@@ -12,6 +12,9 @@ namespace Nodus
   {
     namespace
     {
+      /// Surfaces touch that are nearer than this [face sizes].
+      constexpr double touching = 1e-2;
+
       /// A subsection to append to the case.
       std::string spring_condition(const unsigned int number, const FailureEvidence::Spring &spring)
       {
@@ -155,16 +158,23 @@ namespace Nodus
       }
       if (!open)
         cause.changes = springs;
+      std::vector<SuspectedCause::Change> closures;
+      bool                                touches = true;
       for (unsigned int p = 0; p < evidence.pairs.size(); ++p)
       {
         const auto &pair = parameters.contact_pairs[p];
         if (evidence.pairs[p].closed == 0 && history.increment == 1 && evidence.left_free.empty() &&
             pair.start.status != ContactPairParameters::InitialStatus::closed)
-          cause.changes.push_back({in_pair(p, "Initial status"),
-                                   pair.start.status == ContactPairParameters::InitialStatus::open ? "open" : "by gap",
-                                   "closed",
-                                   "the contact holds the body from the start"});
+        {
+          touches = touches && evidence.pairs[p].gap < touching;
+          closures.push_back({in_pair(p, "Initial status"),
+                              pair.start.status == ContactPairParameters::InitialStatus::open ? "open" : "by gap",
+                              "closed",
+                              "the contact holds the body from the start"});
+        }
       }
+      if (touches)
+        cause.changes.insert(cause.changes.end(), closures.begin(), closures.end());
       if (const auto &load = parameters.load_stepping; load.viscous_stabilisation == 0.)
       {
         SuspectedCause::Change change{
@@ -175,6 +185,8 @@ namespace Nodus
           change.together.emplace_back("Increments", as_list(increments));
         cause.changes.push_back(change);
       }
+      if (!touches) // closing a gap in one step may open all of it in the next
+        cause.changes.insert(cause.changes.end(), closures.begin(), closures.end());
       if (open) // where a load closes the gap a soft spring is no match for it
         cause.changes.insert(cause.changes.end(), springs.begin(), springs.end());
       for (unsigned int p = 0; p < evidence.pairs.size(); ++p)

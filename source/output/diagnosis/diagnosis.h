@@ -13,6 +13,7 @@
 
 #include <array>
 #include <deque>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -89,7 +90,8 @@ namespace Nodus
       Point        lost_X;           ///< reference position of the first of these
       double       sliding     = 0.; ///< largest tangential motion in the increment [face sizes]
       double       penetration = 0.; ///< largest of open sites [face sizes]
-      double       reach = 0., face_size = 0., master_face_size = 0.; ///< [length]
+      double gap   = std::numeric_limits<double>::max(); ///< smallest of open sites with a master point [face sizes]
+      double reach = 0., face_size = 0., master_face_size = 0.; ///< [length]
     };
     std::vector<Pair> pairs;
 
