@@ -10,6 +10,7 @@ import warnings
 from xml.etree import ElementTree
 
 import numpy as np
+from PIL import Image
 
 from harness import NODUS, SOURCE, below, check, nodus, refused, run
 
@@ -162,6 +163,28 @@ def test_figures():
                    .get(command[1], ("picture",))], True))  # fmt: skip
 
 
+def test_animation():
+    """A picture for each time, the last of which stands for a second; Pillow joins pictures that are the same."""
+    results = patch(1).run("results/patch")
+    results.animate("films.gif", field="displacement z", frames_per_second=4)
+    with Image.open("films.gif") as film:
+        pictures, lasts = [], []
+        for frame in range(film.n_frames):
+            film.seek(frame)
+            pictures.append(np.asarray(film.convert("RGB"), float))
+            lasts.append(film.info["duration"])
+    check("film, milliseconds", sum(lasts), (2 + 4) * 250)
+    check("film, pictures that differ from the one before", [np.abs(b - a).max() > 50 for a, b in zip(pictures, pictures[1:])], [True] * 2)
+    refused("an animation is a .gif or a .mp4", results.animate, "film.avi", kind=nodus.ResultsError)
+    refused('there is no field "pressure"', results.animate, "film.gif", field="pressure", kind=nodus.ResultsError)
+    refused('no cell is left by the cut "x > 5"', results.animate, "film.gif", cut="x > 5", kind=nodus.ResultsError)
+    check("files of films", glob.glob("film*"), ["films.gif"])
+    command = [os.path.join(SOURCE, "contrib", "plot", "animate"), results.folder, "--case", os.path.join(SOURCE, "prm", "patch.prm")]
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
+    check("contrib/plot/animate", (done.returncode, done.stdout), (0, "results/patch/animation.gif\n"))
+    check("animation.gif", os.path.getsize("results/patch/animation.gif") > 10000, True)
+
+
 def test_failures():
     """A run that is refused, one that has no solution, one that is killed."""
     parameters = os.path.join(SOURCE, "tests", "parameters")
@@ -231,4 +254,4 @@ def test_interruption():
         below("forces", float(np.abs(force - 1).max()), 1e-9)
 
 
-run(test_patch, test_round, test_what_is_not_there, test_figures, test_failures, test_interruption)
+run(test_patch, test_round, test_what_is_not_there, test_figures, test_animation, test_failures, test_interruption)

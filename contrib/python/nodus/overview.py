@@ -39,7 +39,7 @@ def _plot_profile(axis, surface, profile):
     axis.legend(frameon=False)
 
 
-def _shown_faces(bodies, cut):
+def shown_faces(bodies, cut):
     """Faces of the bodies to draw, of those cells with a centre where a condition holds."""
     keep = None
     if cut:
@@ -62,7 +62,7 @@ def picture(results, t=None, title=None, view=None, cut=None, profile=None):
     """view: (azimuth, elevation) of the viewer in degrees; cut: the cells with a centre where it holds, "y > 0"; profile:
     (field, x, y, z, r or angle, condition or None, curves or None). @throws ResultsError"""
     bodies = results.bodies(t)
-    faces = _shown_faces(bodies, cut)
+    faces = shown_faces(bodies, cut)
     von_mises = bodies.fields["von_mises"]
     try:
         surface = results.surface(t)

@@ -127,6 +127,12 @@ class Results:
     plot_convergence = _method("convergence", "Residuals of every Newton iteration")
     plot_energy = _method("energy", "Energies over time")
 
+    def animate(self, path, **options):
+        """The deformed bodies over the time as a .gif or a .mp4; options: nodus.animation.animate()."""
+        from .animation import animate
+
+        animate(self, path, **options)
+
     def __repr__(self):
         return f"<results in {self.folder}>"
 

@@ -9,9 +9,9 @@ from .render import axes_facing, render, view_axes
 PANEL_PIXELS = 900
 
 
-def colours(name, largest):
-    """The function that maps values in [0, largest] to RGB, and what the colour bar needs."""
-    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, largest if largest > 0 else 1), name)
+def colours(name, largest, least=0):
+    """The function that maps values in [least, largest] to RGB, and what the colour bar needs."""
+    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(least, largest if largest > least else least + 1), name)
     return (lambda values: scale.to_rgba(values)[:, :3]), scale
 
 
@@ -28,18 +28,18 @@ def is_flat(window):
     return window[3] - window[2] < 0.5 * (window[1] - window[0])
 
 
-def picture(axis, points, faces, values, axes, window, function, edges):
+def picture(axis, points, faces, values, axes, window, function, edges, resolution=PANEL_PIXELS):
     pixels = np.array([window[1] - window[0], window[3] - window[2]])
-    pixels = (PANEL_PIXELS * pixels / pixels.max()).round().astype(int)
+    pixels = (resolution * pixels / pixels.max()).round().astype(int)
     image = render(points, faces, values, axes, window, pixels, function, edges=edges)
     axis.imshow(image, extent=window, interpolation="antialiased")
     axis.set_aspect("equal")
     name_axes(axis, axes)
 
 
-def show(figure, axis, points, faces, values, axes, window, colour_map, label, edges):
+def show(figure, axis, points, faces, values, axes, window, colour_map, label, edges, resolution=PANEL_PIXELS):
     function, scale = colour_map
-    picture(axis, points, faces, values, axes, window, function, edges)
+    picture(axis, points, faces, values, axes, window, function, edges, resolution)
     place = {"location": "bottom", "fraction": 0.07} if is_flat(window) else {"fraction": 0.046}
     figure.colorbar(scale, ax=axis, label=label, pad=0.03, **place)
 
