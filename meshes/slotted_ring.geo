@@ -57,6 +57,8 @@ For s In {0 : 1} // half of the ring, upper and lower quarter of the way
     EndIf
   EndFor
 EndFor
+Mesh.ElementOrder = 2; // round, with elements of degree 2
+Mesh.SecondOrderIncomplete = 1;
 Physical Volume("ring", 1) = {volume[]};
 Physical Surface("right", 11) = {right};
 Physical Surface("left", 12) = {left};

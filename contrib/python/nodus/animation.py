@@ -50,6 +50,7 @@ def animate(results, path, *, field="von_mises", view=None, cut=None, title=None
             show(figure, axis, bodies.points, shown, bodies.field(field), axes, window, colour_map, field.replace("_", " "), 0.45,
                  PIXELS)
             figure.suptitle(f"{title or os.path.basename(os.path.normpath(results.folder))}, t = {t:g}")
+            figure.draw_without_rendering()  # the layout settles in the second drawing
             for _ in range(1 if t < times[-1] else frames_per_second):
                 writer.grab_frame()
     os.replace(unfinished, path)
