@@ -14,10 +14,11 @@ namespace Nodus
     constexpr double seen_rise = 2e-3;
   } // namespace
 
-  std::vector<std::string> sides_that_stay_facets(const Parameters      &parameters,
-                                                  const ContactSurfaces &surfaces,
-                                                  const ContactGeometry &geometry,
-                                                  const Bodies          &bodies)
+  std::vector<std::string> sides_that_stay_facets(const Parameters           &parameters,
+                                                  const ContactSurfaces      &surfaces,
+                                                  const ContactGeometry      &geometry,
+                                                  const Bodies               &bodies,
+                                                  const dealii::Mapping<dim> &mapping)
   {
     const auto is_plane = [&](const Bodies::Triangulation::cell_iterator &cell)
     {
@@ -38,9 +39,10 @@ namespace Nodus
         const Region region(side == slave_side ? pair.slave : pair.master, bodies, label);
         unsigned int body = 0; // of the facets, counted from 1
         for (const auto &cell : bodies.triangulation().active_cell_iterators())
-          for (const unsigned int f : cell->face_indices())
-            if (cell->is_locally_owned() && region.contains_face(cell, f) && is_plane(cell))
-              body = std::max<unsigned int>(body, cell->material_id() + 1);
+          if (cell->is_locally_owned() && is_plane(cell))
+            for (const unsigned int f : cell->face_indices())
+              if (region.selects_face(mapping, cell, f))
+                body = std::max<unsigned int>(body, cell->material_id() + 1);
         const SurfaceGeometry &shape = (side == slave_side ? geometry.slave : geometry.master)[p];
         const double           size  = side == slave_side ? surfaces.face_size(p) : surfaces.master_face_size(p);
         body                         = dealii::Utilities::MPI::max(body, communicator);

@@ -198,7 +198,7 @@ namespace Nodus
     refuse_hidden_overlap(pairs, contact->surfaces(), bodies, as_it_is, now.unknowns.block(0), t);
     if (t == 0.)
       for (const std::string &sentence :
-           sides_that_stay_facets(parameters, contact->surfaces(), *contact->geometry(), bodies))
+           sides_that_stay_facets(parameters, contact->surfaces(), *contact->geometry(), bodies, *mapping))
         warnings.push_back(sentence);
     states.committed = now;
     return warnings;
