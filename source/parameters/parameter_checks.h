@@ -67,6 +67,8 @@ namespace Nodus
     bool share_faces(const RegionParameters &a, const RegionParameters &b);
 
     void check(const Section &section, const MaterialParameters &material);
+    /// Of a rigid body, which has none.
+    void refuse_material(const Section &section, const MaterialParameters &material);
     void check(const Section &section, const ContactPairParameters &pair, unsigned int n_bodies);
     void check(const Section                     &section,
                const BoundaryConditionParameters &condition,

@@ -22,6 +22,7 @@ namespace Nodus
     using ParameterChecks::check_expression;
     using ParameterChecks::Given;
     using ParameterChecks::is_given;
+    using ParameterChecks::refuse_material;
     using ParameterChecks::Section;
     using ParameterChecks::share_faces;
 
@@ -83,10 +84,7 @@ namespace Nodus
       section.require(body.volumetric_treatment == BodyParameters::VolumetricTreatment::standard,
                       "Volumetric treatment",
                       "has no effect on a rigid body; remove it");
-      Section{section.file, section.name + "/Material"}.require(
-          body.material.youngs_modulus == 0. && body.material.ogden_moduli.empty() && !body.material.own_law.object,
-          "Young's modulus",
-          "has no meaning for a rigid body; remove the material, or 'Rigid = true'");
+      refuse_material({section.file, section.name + "/Material"}, body.material);
     }
 
     void check(const Section &section, const LinearSolverParameters &solver)

@@ -64,6 +64,16 @@ namespace Nodus
                       "must not be below Yield stress; softening would depend on the mesh");
     }
 
+    std::vector<Given> keys_of_plasticity(const MaterialParameters &material)
+    {
+      return {{"Yield stress", material.yield_stress != 0.},
+              {"Hardening modulus", material.hardening_modulus != 0.},
+              {"Saturation stress", material.saturation_stress != 0.},
+              {"Saturation rate", material.saturation_rate != 0.},
+              {"Hardening strains", !material.hardening_strains.empty()},
+              {"Hardening stresses", !material.hardening_stresses.empty()}};
+    }
+
     void check_poissons_ratio(const Section &section, const MaterialParameters &material)
     {
       section.require(
@@ -123,13 +133,23 @@ namespace Nodus
       if (material.law == Law::j2_plasticity)
         check_hardening(section, material);
       else
-        for (const auto &[key, given] : {Given("Yield stress", material.yield_stress != 0.),
-                                         Given("Hardening modulus", material.hardening_modulus != 0.),
-                                         Given("Saturation stress", material.saturation_stress != 0.),
-                                         Given("Saturation rate", material.saturation_rate != 0.),
-                                         Given("Hardening strains", !material.hardening_strains.empty()),
-                                         Given("Hardening stresses", !material.hardening_stresses.empty())})
+        for (const auto &[key, given] : keys_of_plasticity(material))
           section.require(!given, key, "has no effect on this law; remove it or set Law = J2 plasticity");
+    }
+
+    void refuse_material(const Section &section, const MaterialParameters &material)
+    {
+      const MaterialParameters none;
+      std::vector<Given>       keys = keys_of_plasticity(material);
+      keys.insert(keys.begin(),
+                  {{"Young's modulus", material.youngs_modulus != 0.},
+                   {"Poisson's ratio", material.poissons_ratio != none.poissons_ratio},
+                   {"Law", material.law != none.law},
+                   {"Mooney-Rivlin ratio", material.mooney_rivlin_ratio != 0.},
+                   {"Ogden moduli", !material.ogden_moduli.empty()},
+                   {"Ogden exponents", !material.ogden_exponents.empty()}});
+      for (const auto &[key, given] : keys)
+        section.require(!given, key, "has no meaning for a rigid body; remove the material, or 'Rigid = true'");
     }
 
     void initialize(const Section &section, const MaterialParameters &material)
