@@ -2,6 +2,7 @@
 #include "contact/geometry_tangent.h"
 #include "contact/intrusion.h"
 #include "contact/loci.h"
+#include "contact/pair_scales.h"
 #include "contact/site_values.h"
 #include "contact/tractions.h"
 #include "mesh/sides.h"
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 namespace Nodus
@@ -30,6 +30,7 @@ namespace Nodus
       , surfaces_(pairs, bodies, dof_handler, mapping, stiffness)
       , status_(pairs, surfaces_, softer_sides(pairs, stiffness), strategy, now.statuses)
       , assembler_(surfaces_, pairing_, jump_, weights_, status_)
+      , depths_(slave_diagonals(pairs, bodies))
   {
     std::vector<unsigned int> rigid_numbers(bodies.size(), dealii::numbers::invalid_unsigned_int);
     for (unsigned int i = 0; i < rigid_bodies.size(); ++i)
@@ -43,21 +44,6 @@ namespace Nodus
     now_.jump.assign(surfaces_.n_sites(), Vector3());
     now_.on_new_mesh = false;
     now_.stuck.assign(surfaces_.n_sites(), 0);
-  }
-
-  std::vector<double> ContactInterface::softer_sides(const std::vector<ContactPairParameters> &pairs,
-                                                     const std::vector<double>                &stiffness)
-  {
-    std::vector<double> softer;
-    for (const auto &pair : pairs)
-    {
-      softer.push_back(std::numeric_limits<double>::max());
-      for (const RegionParameters *const side : {&pair.slave, &pair.master})
-        for (const unsigned int body : side->bodies)
-          if (side == &pair.slave || !pair.has_rigid_master())
-            softer.back() = std::min(softer.back(), stiffness[body - 1]);
-    }
-    return softer;
   }
 
   void ContactInterface::begin_attempt()
@@ -221,6 +207,19 @@ namespace Nodus
   {
     update_slip_rates(duration);
     status_.freeze_threshold(pressure());
+    begin_friction();
+  }
+
+  void ContactInterface::freeze_thresholds(std::vector<double> thresholds)
+  {
+    status_.freeze(std::move(thresholds));
+    begin_friction();
+  }
+
+  void ContactInterface::begin_friction()
+  {
+    if (status_.gains_friction())
+      status_.begin_friction(status_input(), depths_);
   }
 
   void ContactInterface::follow_pressure(const double duration, BlockVector &unknowns, const Vector &start)
@@ -257,11 +256,6 @@ namespace Nodus
   StatusInput ContactInterface::status_input() const
   {
     return Nodus::status_input(pairs_, surfaces_, pairing_, weights_, status_, assembler_, state_);
-  }
-
-  Status::Update ContactInterface::update_statuses(const bool closing_only)
-  {
-    return status_.update(status_input(), closing_only);
   }
 
   void ContactInterface::pass_to_regularised_law(BlockVector &unknowns, const Vector &start)
@@ -304,11 +298,6 @@ namespace Nodus
     residual_ = assembler_.assemble(state_, system, linearise_threshold);
   }
 
-  void ContactInterface::evaluate()
-  {
-    residual_ = assembler_.residual(state_);
-  }
-
   void ContactInterface::add_geometry_tangent(LinearSystem &system) const
   {
     GeometryTangent(pairs_, surfaces_, *geometry_, averaged_, pairing_, jump_, weights_, status_)
@@ -318,11 +307,6 @@ namespace Nodus
   void ContactInterface::add_forces(Vector &force) const
   {
     assembler_.add_forces(residual_, force);
-  }
-
-  double ContactInterface::norm(const double length) const
-  {
-    return assembler_.norm(residual_, length);
   }
 
   // -------------------------------------------------------------------------------------------------------- state kept

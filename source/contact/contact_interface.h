@@ -40,10 +40,6 @@ namespace Nodus
                      const RigidBodies                        &rigid_bodies,
                      InterfaceState                           &now);
 
-    /// Young's modulus of the softer side of each pair [pressure].
-    static std::vector<double> softer_sides(const std::vector<ContactPairParameters> &pairs,
-                                            const std::vector<double>                &stiffness);
-
     /// Where rigid masters are in the increment from @p begin to @p end, which pairs act in it, and which part of the
     /// interference of each is pressed out by its end.
     void begin_increment(double begin, double end, const std::vector<double> &resolved_interference);
@@ -86,12 +82,17 @@ namespace Nodus
     /// The same within Newton's iteration: sticking nodes keep their friction traction mu lambda Lambda, which as
     /// unknown of the iteration is linear (theory section 12), unless elastic slip gives Lambda.
     void follow_pressure(double duration, BlockVector &unknowns, const Vector &start);
+    /// Freezes these (Status::freeze).
+    void freeze_thresholds(std::vector<double> thresholds);
     void update_slip_rates(double duration);
     /// Contact pressure of every site, as friction follows it: friction_pressure().
     std::vector<double> pressure() const;
 
     /// Tests and changes the statuses (Status::update).
-    Status::Update update_statuses(bool closing_only);
+    Status::Update update_statuses(const bool closing_only)
+    {
+      return status_.update(status_input(), closing_only);
+    }
     /// The laws have just been regularised: multipliers of lumped weights become the nodal means that those of
     /// consistent weights had.
     void pass_to_regularised_law(BlockVector &unknowns, const Vector &start);
@@ -105,7 +106,10 @@ namespace Nodus
     /// Sets what the next correction must add at prescribed components, zero elsewhere.
     void set_prescribed(const Vector &prescribed);
     /// Keeps the residual of the present values.
-    void evaluate();
+    void evaluate()
+    {
+      residual_ = assembler_.residual(state_);
+    }
     /// Writes the contact terms of @p system and keeps the residual (ContactAssembler::assemble).
     void assemble(LinearSystem &system, bool linearise_threshold = false);
     /// Adds what the tangent gains where the geometry follows the iterate (GeometryTangent). assemble() comes first.
@@ -113,7 +117,10 @@ namespace Nodus
     /// Adds the nodal contact forces, at prescribed components too.
     void add_forces(Vector &force) const;
     /// Largest relative violation of the contact and friction laws (eq. N4): lengths over @p length.
-    double norm(double length) const;
+    double norm(const double length) const
+    {
+      return assembler_.norm(residual_, length);
+    }
 
     /// The increment has converged after @p duration [time]: slips, forces, jumps and areas become those that the next
     /// one begins with.
@@ -204,6 +211,7 @@ namespace Nodus
     void                 carry_over_sticking();
     std::vector<Vector3> displacement() const;
     StatusInput          status_input() const;
+    void                 begin_friction();
 
     const std::vector<ContactPairParameters> &pairs_;
     const RigidBodies                        &rigid_bodies_;
@@ -217,6 +225,7 @@ namespace Nodus
     SurfaceWeights                            weights_;
     Status                                    status_;
     ContactAssembler                          assembler_;
+    const std::vector<double>                 depths_; ///< diagonals of the slave bodies, of the pairs
     ContactState                              state_;
     ContactResidual                           residual_;
   };

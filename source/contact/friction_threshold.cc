@@ -75,6 +75,28 @@ namespace Nodus
     update_floor();
   }
 
+  bool Status::gains_friction(const unsigned int site) const
+  {
+    return surfaces_.is_owned(site) && friction(site) && !had_friction_[site] && !holds_friction(site) &&
+           pairs_[surfaces_.pair(site)].contact_law != ContactPairParameters::ContactLaw::tied;
+  }
+
+  bool Status::gains_friction() const
+  {
+    unsigned int sites = 0;
+    for (unsigned int k = 0; k < now_.contact.size(); ++k)
+      sites += gains_friction(k);
+    return dealii::Utilities::MPI::max(sites, surfaces_.layout().communicator) > 0;
+  }
+
+  void Status::begin_friction(const StatusInput &input, const std::vector<double> &depth)
+  {
+    for (unsigned int k = 0; k < now_.contact.size(); ++k)
+      if (gains_friction(k) && now_.stick[k])
+        now_.stick[k] = can_stick(input, k, depth[surfaces_.pair(k)]);
+    surfaces_.site_exchange().update(now_.stick);
+  }
+
   void Status::set_slips(const std::vector<std::array<double, 2>> &slip, const double duration)
   {
     std::ostringstream problem;

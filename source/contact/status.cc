@@ -41,6 +41,7 @@ namespace Nodus
       , threshold_floor_(pairs.size(), 0.)
       , resolved_(pairs.size(), 0.)
       , ledger_(surfaces.n_sites())
+      , opened_(surfaces.n_sites(), false)
   {
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
@@ -225,6 +226,24 @@ namespace Nodus
     return largest;
   }
 
+  /// Eq. S3. Stick would take a site back to where the increment began: one that has come farther than friction can
+  /// hold slips, by eq. 7 with the threshold of the pressure that eq. 2 closes it with. So does one that has opened in
+  /// this loop: stick may be what pulled it open.
+  bool Status::can_stick(const StatusInput &input, const unsigned int site, const double depth) const
+  {
+    if (opened_[site])
+      return false;
+    const double slip = std::hypot(input.slip[site][0], input.slip[site][1]);
+    if (elastic_slip(site) > 0.)
+      return slip <= elastic_slip(site);
+    const unsigned int p         = surfaces_.pair(site);
+    const double       value     = input.pressure[site] - normal_augmentation(site) * input.distance[site];
+    const double       threshold = limits_[p].threshold(value, now_.friction_factor[site], friction_point(site));
+    return pairs_[p].tangential_augmentation_factor * normal_augmentation(site) * surfaces_.face_size(p) / depth *
+               slip <=
+           -threshold;
+  }
+
   Status::Update Status::update(const StatusInput &input, const bool closing_only)
   {
     const MPI_Comm communicator = surfaces_.layout().communicator;
@@ -250,27 +269,16 @@ namespace Nodus
         found.push_back(c);
       }
 
-    // Stick would take a site that closes back to where the increment began. One that has come farther than friction
-    // can hold slips (eq. S3): eq. 7 with the threshold of the pressure that eq. 2 closes it with.
-    const auto held = [&](const unsigned int k)
-    {
-      const unsigned int p    = surfaces_.pair(k);
-      const double       slip = std::hypot(input.slip[k][0], input.slip[k][1]);
-      if (elastic_slip(k) > 0.)
-        return slip <= elastic_slip(k);
-      const double value     = input.pressure[k] - normal_augmentation(k) * input.distance[k];
-      const double threshold = limits_[p].threshold(value, now_.friction_factor[k], friction_point(k));
-      return pairs_[p].tangential_augmentation_factor * normal_augmentation(k) * slip <= -threshold;
-    };
     for (unsigned int i = 0; i < result.sites.size(); ++i)
     {
       const unsigned int k = result.sites[i];
       now_.contact[k]      = found[i] != Contradiction::tension;
       if (found[i] == Contradiction::tension)
         opened_[k] = true;
-      else // a site that opened in this loop slips when it closes: stick may be what pulled it open
-        now_.stick[k] = found[i] == Contradiction::against_slip ||
-                        (found[i] == Contradiction::penetration && !opened_[k] && held(k));
+      else
+        now_.stick[k] =
+            found[i] == Contradiction::against_slip ||
+            (found[i] == Contradiction::penetration && can_stick(input, k, surfaces_.face_size(surfaces_.pair(k))));
       ++ledger_[k].changes;
       ledger_[k].last = found[i];
     }

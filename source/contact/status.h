@@ -177,6 +177,11 @@ namespace Nodus
     Change threshold_change(const std::vector<double> &site_pressure) const;
     /// Freezes the thresholds that @p site_pressure leads to. Collective.
     void freeze_threshold(const std::vector<double> &site_pressure);
+    /// Whether the last thresholds have brought friction to closed sites that had none. Collective.
+    bool gains_friction() const;
+    /// Of these, those slip that have come farther without it than friction could hold over @p depth [length] of each
+    /// pair (eq. S3). Collective.
+    void begin_friction(const StatusInput &input, const std::vector<double> &depth);
     /// mu lambda_s of every local site: as it is frozen, and as it would be with @p site_pressure.
     const std::vector<double> &thresholds() const
     {
@@ -310,6 +315,9 @@ namespace Nodus
     std::vector<double> largest_pressures(const StatusInput &input) const;
     Violation           violation(const StatusInput &input, const std::vector<char> &sites) const;
     void                find_period(Update &update);
+    /// Whether friction could hold the slip of a site if it sheared the softer body over this @p depth [length].
+    bool can_stick(const StatusInput &input, unsigned int site, double depth) const;
+    bool gains_friction(unsigned int site) const;
 
     const std::vector<ContactPairParameters>          &pairs_;
     const ContactSurfaces                             &surfaces_;

@@ -170,7 +170,7 @@ namespace Nodus
     if (!contact.has_friction())
       return loop.finished(0., "");
     const auto                timer    = journal_.profile.time(Phase::status);
-    Status                   &status   = contact.status();
+    const Status             &status   = contact.status();
     const Status::Change      change   = contact.threshold_change(equilibrium_.increment().duration());
     const std::vector<double> pressure = contact.pressure();
     const std::string         worst    = contact.locus(change.site);
@@ -199,7 +199,7 @@ namespace Nodus
         if (contact.surfaces().is_owned(s))
           next[s] = *value++;
     }
-    status.freeze(std::move(next));
+    contact.freeze_thresholds(std::move(next));
     return false;
   }
 

@@ -3,6 +3,7 @@
 #include "bulk/history_transfer.h"
 #include "bulk/stress_error.h"
 #include "contact/contact_error.h"
+#include "contact/pair_scales.h"
 #include "mesh/hanging_nodes.h"
 #include "run/own_indicator.h"
 #include "run/state_vectors.h"
@@ -48,7 +49,7 @@ namespace Nodus
           adaptivity.bulk_weight, model_.dof_handler, *model_.solid, model_.materials, u, stress, indicator);
       if (touches)
         add_contact_error(adaptivity.contact_weight,
-                          ContactInterface::softer_sides(model_.parameters.contact_pairs, model_.stiffness()),
+                          softer_sides(model_.parameters.contact_pairs, model_.stiffness()),
                           contact.surfaces(),
                           *contact.geometry(),
                           contact.fields(),
