@@ -30,7 +30,7 @@ namespace Nodus
       , surfaces_(pairs, bodies, dof_handler, mapping, stiffness)
       , status_(pairs, surfaces_, softer_sides(pairs, stiffness), strategy, now.statuses)
       , assembler_(surfaces_, pairing_, jump_, weights_, status_)
-      , depths_(slave_diagonals(pairs, bodies))
+      , depths_(softer_diagonals(pairs, stiffness, bodies))
   {
     std::vector<unsigned int> rigid_numbers(bodies.size(), dealii::numbers::invalid_unsigned_int);
     for (unsigned int i = 0; i < rigid_bodies.size(); ++i)

@@ -225,7 +225,7 @@ namespace Nodus
     SurfaceWeights                            weights_;
     Status                                    status_;
     ContactAssembler                          assembler_;
-    const std::vector<double>                 depths_; ///< diagonals of the slave bodies, of the pairs
+    const std::vector<double>                 depths_; ///< of the softer bodies of the pairs: softer_diagonals()
     ContactState                              state_;
     ContactResidual                           residual_;
   };

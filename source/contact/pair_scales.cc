@@ -2,36 +2,42 @@
 #include "mesh/bodies.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace Nodus
 {
+  namespace
+  {
+    /// Number of the softer body of a pair, of which there is one at least.
+    unsigned int softer_body(const ContactPairParameters &pair, const std::vector<double> &stiffness)
+    {
+      std::vector<unsigned int> bodies = pair.slave.bodies;
+      if (!pair.has_rigid_master())
+        bodies.insert(bodies.end(), pair.master.bodies.begin(), pair.master.bodies.end());
+      return *std::min_element(bodies.begin(),
+                               bodies.end(),
+                               [&](const unsigned int a, const unsigned int b)
+                               { return stiffness[a - 1] < stiffness[b - 1]; });
+    }
+  } // namespace
+
   std::vector<double> softer_sides(const std::vector<ContactPairParameters> &pairs,
                                    const std::vector<double>                &stiffness)
   {
-    std::vector<double> softer;
+    std::vector<double> moduli;
     for (const auto &pair : pairs)
-    {
-      softer.push_back(std::numeric_limits<double>::max());
-      for (const RegionParameters *const side : {&pair.slave, &pair.master})
-        for (const unsigned int body : side->bodies)
-          if (side == &pair.slave || !pair.has_rigid_master())
-            softer.back() = std::min(softer.back(), stiffness[body - 1]);
-    }
-    return softer;
+      moduli.push_back(stiffness[softer_body(pair, stiffness) - 1]);
+    return moduli;
   }
 
-  std::vector<double> slave_diagonals(const std::vector<ContactPairParameters> &pairs, const Bodies &bodies)
+  std::vector<double> softer_diagonals(const std::vector<ContactPairParameters> &pairs,
+                                       const std::vector<double>                &stiffness,
+                                       const Bodies                             &bodies)
   {
     std::vector<double> diagonals;
     for (const auto &pair : pairs)
     {
-      diagonals.push_back(0.);
-      for (const unsigned int body : pair.slave.bodies)
-      {
-        const auto ends  = bodies.bounding_box(body - 1).get_boundary_points();
-        diagonals.back() = std::max(diagonals.back(), ends.first.distance(ends.second));
-      }
+      const auto ends = bodies.bounding_box(softer_body(pair, stiffness) - 1).get_boundary_points();
+      diagonals.push_back(ends.first.distance(ends.second));
     }
     return diagonals;
   }

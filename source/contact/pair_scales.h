@@ -13,8 +13,10 @@ namespace Nodus
   std::vector<double> softer_sides(const std::vector<ContactPairParameters> &pairs,
                                    const std::vector<double>                &stiffness);
 
-  /// Largest diagonal of the slave bodies of each pair [length].
-  std::vector<double> slave_diagonals(const std::vector<ContactPairParameters> &pairs, const Bodies &bodies);
+  /// Diagonal of the box around the body that this is the modulus of [length].
+  std::vector<double> softer_diagonals(const std::vector<ContactPairParameters> &pairs,
+                                       const std::vector<double>                &stiffness,
+                                       const Bodies                             &bodies);
 } // namespace Nodus
 
 #endif
