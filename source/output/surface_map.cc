@@ -11,7 +11,9 @@
 #include <deal.II/fe/fe_tools.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 #include <unordered_map>
 
 namespace Nodus
@@ -23,9 +25,11 @@ namespace Nodus
     /// What a face may be to the case.
     struct Role
     {
-      std::string name;
-      Region      region;
-      bool        on_cells, on_nodes;
+      std::string           name;
+      std::optional<Region> region; ///< none of a rigid master, which is opposite to the faces of the role before
+      bool                  on_cells = false, on_nodes = false;
+      unsigned int          pair    = 0; ///< of the rigid master
+      unsigned int          carrier = 0; ///< number of the body that carries it; 0: none
     };
 
     /// What names may have that XML does not take as it is.
@@ -46,10 +50,12 @@ namespace Nodus
         const std::string number = std::to_string(p + 1);
         const std::string name =
             "contact pair " + number + in_brackets(pair.name == "pair " + number ? "" : pair.name) + ", ";
-        roles.push_back(
-            {name + (pair.self_contact ? "both sides" : "slave"), {pair.slave, bodies, name}, false, false});
-        if (!pair.self_contact && !pair.has_rigid_master())
-          roles.push_back({name + "master", {pair.master, bodies, name}, false, false});
+        roles.push_back({name + (pair.self_contact ? "both sides" : "slave"), Region(pair.slave, bodies, name)});
+        if (pair.has_rigid_master())
+          roles.push_back(
+              {name + "master", {}, false, false, p, pair.master.bodies.empty() ? 0 : pair.master.bodies[0]});
+        else if (!pair.self_contact)
+          roles.push_back({name + "master", Region(pair.master, bodies, name)});
       }
       for (unsigned int n = 0; n < parameters.boundary_conditions.size(); ++n)
       {
@@ -59,7 +65,7 @@ namespace Nodus
         const bool        on_cells = condition.type == Type::body_force;
         const std::string name = "boundary condition " + std::to_string(n + 1) + in_brackets(condition.name) + ", " +
                                  text_of(condition.type);
-        roles.push_back({name, {condition.region, bodies, name, on_cells}, on_cells, condition.holds()});
+        roles.push_back({name, Region(condition.region, bodies, name, on_cells), on_cells, condition.holds()});
       }
       return roles;
     }
@@ -72,12 +78,43 @@ namespace Nodus
       std::vector<double>   numbers;    ///< body and boundary id of each face
       std::vector<char>     roles;      ///< of each face, by role
       std::vector<char>     node_roles; ///< of its nodes
+
+      /// What of the rigid master of role @p r is opposite to the face at the positions @p at, if it has a point
+      /// opposite to each of them. @p first: of the numbers of its points, which are those of the nodes from there on.
+      void add_opposite(const std::vector<Role>     &all,
+                        const unsigned int           r,
+                        const std::vector<DoFIndex> &face,
+                        const std::vector<Point>    &at,
+                        const DoFIndex               first,
+                        const RigidMasters          &rigid)
+      {
+        std::vector<Point> opposite;
+        for (const Point &x : at)
+          if (const std::optional<Point> closest = rigid(all[r].pair, x))
+            opposite.push_back(*closest);
+        if (opposite.size() != at.size())
+          return;
+        const unsigned int n = static_cast<unsigned int>(std::lround(std::sqrt(at.size())));
+        for (unsigned int j = 0; j < at.size(); ++j)
+        {
+          const unsigned int back = n - 1 - j % n + n * (j / n); // seen from the slave
+          nodes.push_back(first + face[back]);
+          for (unsigned int c = 0; c < dim; ++c)
+            X.push_back(opposite[back][c]);
+        }
+        numbers.push_back(all[r].carrier);
+        numbers.push_back(-1.);
+        for (unsigned int i = 0; i < all.size(); ++i)
+          roles.push_back(i == r);
+        node_roles.insert(node_roles.end(), all.size() * at.size(), 0);
+      }
     };
 
     Faces owned_faces(const std::vector<Role>       &roles,
                       const Bodies                  &bodies,
                       const dealii::DoFHandler<dim> &dof_handler,
-                      const dealii::Mapping<dim>    &mapping)
+                      const dealii::Mapping<dim>    &mapping,
+                      const RigidMasters            &rigid)
     {
       const auto           &fe      = dof_handler.get_fe();
       const auto           &scalar  = fe.base_element(0);
@@ -93,31 +130,38 @@ namespace Nodus
             if (!cell->at_boundary(f))
               continue;
             cell->get_dof_indices(dofs);
-            std::vector<Point> X;
+            std::vector<Point>    X;
+            std::vector<DoFIndex> nodes;
             for (unsigned int j = 0; j < n * n; ++j)
             {
               const unsigned int a = f % 2 == 1 ? j % n : j / n, b = f % 2 == 1 ? j / n : j % n;
               const unsigned int node =
                   to_node[f % 2 * (n - 1) * step[f / 2] + a * step[(f / 2 + 1) % dim] + b * step[(f / 2 + 2) % dim]];
               X.push_back(mapping.transform_unit_to_real_cell(cell, scalar.unit_support_point(node)));
-              faces.nodes.push_back(dofs[fe.component_to_system_index(0, node)] / dim);
+              nodes.push_back(dofs[fe.component_to_system_index(0, node)] / dim);
               for (unsigned int c = 0; c < dim; ++c)
                 faces.X.push_back(X[j][c]);
             }
+            faces.nodes.insert(faces.nodes.end(), nodes.begin(), nodes.end());
             faces.numbers.push_back(cell->material_id() + 1.);
             faces.numbers.push_back(cell->face(f)->boundary_id());
+            const std::size_t first = faces.roles.size();
             for (const Role &role : roles)
             {
-              const bool        nodes  = role.on_nodes && role.region.contains_face(cell, f);
-              const Vector3     normal = nodes ? role.region.normal(mapping, cell, f) : Vector3();
+              const bool        held_there = role.on_nodes && role.region->contains_face(cell, f);
+              const Vector3     normal     = held_there ? role.region->normal(mapping, cell, f) : Vector3();
               std::vector<char> held(n * n, 0);
-              for (unsigned int j = 0; nodes && j < n * n; ++j)
-                held[j] = role.region.contains_point(X[j], normal);
+              for (unsigned int j = 0; held_there && j < n * n; ++j)
+                held[j] = role.region->contains_point(X[j], normal);
               faces.node_roles.insert(faces.node_roles.end(), held.begin(), held.end());
-              faces.roles.push_back(role.on_nodes   ? std::count(held.begin(), held.end(), 1) == n * n
-                                    : role.on_cells ? role.region.selects_cell(mapping, cell)
-                                                    : role.region.selects_face(mapping, cell, f));
+              faces.roles.push_back(!role.region    ? false
+                                    : role.on_nodes ? std::count(held.begin(), held.end(), 1) == n * n
+                                    : role.on_cells ? role.region->selects_cell(mapping, cell)
+                                                    : role.region->selects_face(mapping, cell, f));
             }
+            for (unsigned int r = 1; r < roles.size(); ++r)
+              if (!roles[r].region && faces.roles[first + r - 1])
+                faces.add_opposite(roles, r, nodes, X, r * (dof_handler.n_dofs() / dim), rigid);
           }
       return faces;
     }
@@ -176,14 +220,15 @@ namespace Nodus
                       const Parameters              &parameters,
                       const Bodies                  &bodies,
                       const dealii::DoFHandler<dim> &dof_handler,
-                      const dealii::Mapping<dim>    &mapping)
+                      const dealii::Mapping<dim>    &mapping,
+                      const RigidMasters            &rigid)
   {
     namespace MPI                     = dealii::Utilities::MPI;
     const MPI_Comm     communicator   = communicator_of(dof_handler);
     const unsigned int degree         = dof_handler.get_fe().degree;
     const unsigned int nodes_per_face = (degree + 1) * (degree + 1);
     const auto         roles          = roles_of(parameters, bodies);
-    const Faces        own            = owned_faces(roles, bodies, dof_handler, mapping);
+    const Faces        own            = owned_faces(roles, bodies, dof_handler, mapping, rigid);
 
     const auto  nodes = MPI::gather(communicator, own.nodes);
     const auto  X = MPI::gather(communicator, own.X), numbers = MPI::gather(communicator, own.numbers);

@@ -2,6 +2,7 @@
 #include "output/results_folder.h"
 #include "output/surface_map.h"
 #include "parallel/throw_everywhere.h"
+#include "rigid/rigid_surface.h"
 #include "run/load_path.h"
 #include "run/validation.h"
 #include "solve/displacement_preconditioner.h"
@@ -232,7 +233,12 @@ namespace Nodus
     model.look_ahead(path.planned_times());
     if (!surfaces.empty()) // first: who is told that bodies overlap wants to see them
     {
-      write_surfaces(surfaces, parameters, model.bodies, model.dof_handler, *model.mapping);
+      const RigidMasters rigid = [&](const unsigned int pair, const Point &x)
+      {
+        const RigidPoint closest = model.contact->surfaces().rigid_master(pair)->closest(x);
+        return closest.found ? std::optional<Point>(closest.x) : std::nullopt;
+      };
+      write_surfaces(surfaces, parameters, model.bodies, model.dof_handler, *model.mapping, rigid);
       journal.console.line("  surfaces: " + surfaces);
     }
     Nodus::validate(model, states, path.at_hand(), journal.console);

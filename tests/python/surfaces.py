@@ -107,6 +107,32 @@ def test_refined():
         below("    their x", np.abs(found.mesh.points[nodes, 0]).max(), 1e-6)
 
 
+def test_rigid_masters():
+    """The lower side of a cube, 16 faces, on a rigid ball below it: the part of the ball that is opposite, looking at the cube; and on a
+    plane that a rigid body carries."""
+    for ranks, degree in ((1, 1), (3, 2)):
+        case = body_case(CUBE, "nz>0.9", degree=degree)
+        case["Contact pair 1"] = {"Slave body": 1, "Slave where": "nz<-0.9", "Master surface": "sphere", "Master radius": 2,
+                                  "Master point": [0.5, 0.5, -2]}  # fmt: skip
+        found = roles(case, ranks)
+        check(f"Q{degree}, {ranks} ranks, roles", found.names[:2], ["contact pair 1, slave", "contact pair 1, master"])
+        ball = found.faces["contact pair 1, master"]
+        check("    faces", [int(found.faces[name].sum()) for name in found.names[:2]], [16, 16])
+        check("    body and boundary id", [set(found.mesh.cell_fields[name][ball]) for name in ("body", "boundary_id")], [{0}, {-1}])
+        from_centre = found.mesh.points[found.mesh.cells[ball]] - [0.5, 0.5, -2]
+        below("    distance from the centre for 2", np.abs(np.linalg.norm(from_centre, axis=-1) - 2).max(), 1e-5)
+        outward = np.einsum("ij,ij->i", _normals(found.mesh)[ball], from_centre.mean((1, 2)))
+        check("    faces that look out of the ball", int((outward > 0).sum()), 16)
+        check("    what is said of them", found.text("contact pair 1, master").split("\n")[1], "master, rigid, opposite to 16 faces")
+        case["Body 2"] = {"Rigid": True}
+        case["Contact pair 1"].update({"Master surface": "plane", "Master radius": 0, "Master point": [0, 0, -0.5], "Master axis": [0, 0, 1],
+                                       "Master body": 2})  # fmt: skip
+        found = roles(case, ranks)
+        plane = found.faces["contact pair 1, master"]
+        check("plane: body", set(found.mesh.cell_fields["body"][plane]), {2})
+        below("    z for -0.5", np.abs(found.mesh.points[found.mesh.cells[plane]][..., 2] + 0.5).max(), 1e-6)
+
+
 def patch(by_place, **sections):
     """Two blocks that press on each other with 25; all faces by their normals, or by ids."""
     case = nodus.Case.read(os.path.join(SOURCE, "prm", "patch.prm"), program=PROGRAM)
@@ -209,4 +235,4 @@ def test_picture():
     check("refused", [done.returncode, "\nsurfaces: " in "\n" + done.stdout, "Traceback" in done.stdout], [1, True, False])
 
 
-run(test_planes_and_normals, test_cylinders, test_sphere, test_refined, test_forces, test_refusals, test_file, test_picture)
+run(test_planes_and_normals, test_cylinders, test_sphere, test_refined, test_rigid_masters, test_forces, test_refusals, test_file, test_picture)

@@ -42,9 +42,11 @@ class Roles:
     def text(self, name):
         """The name and, in a line of its own, what it is and how much there is of it."""
         faces, nodes = int(np.count_nonzero(self.faces[name])), len(self.nodes[name])
+        whose, what = name.rsplit(", ", 1)
+        if faces and (self.mesh.cell_fields["boundary_id"][self.faces[name]] < 0).all():
+            return f"{whose}\n{what}, rigid, opposite to {faces} face{'s' * (faces != 1)}"
         parts = [f"{faces} face{'s' * (faces != 1)}"] * bool(faces or not nodes)
         parts += [f"{nodes} {'more ' * bool(faces)}node{'s' * (nodes != 1)}"] * bool(nodes)
-        whose, what = name.rsplit(", ", 1)
         return f"{whose}\n{', '.join([what, *parts])}"
 
 
