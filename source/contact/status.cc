@@ -41,7 +41,6 @@ namespace Nodus
       , threshold_floor_(pairs.size(), 0.)
       , resolved_(pairs.size(), 0.)
       , ledger_(surfaces.n_sites())
-      , opened_(surfaces.n_sites(), false)
   {
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
@@ -226,17 +225,11 @@ namespace Nodus
     return largest;
   }
 
-  /// Eq. S3. Stick would take a site back to where the increment began: one that has come farther than friction can
-  /// hold slips, by eq. 7 with the threshold of the pressure that eq. 2 closes it with. So does one that has opened in
-  /// this loop: stick may be what pulled it open.
+  /// Eq. S3: eq. 7 with the threshold of the pressure that eq. 2 closes the site with.
   bool Status::can_stick(const StatusInput &input, const unsigned int site, const double depth) const
   {
-    if (opened_[site])
-      return false;
-    const double slip = std::hypot(input.slip[site][0], input.slip[site][1]);
-    if (elastic_slip(site) > 0.)
-      return slip <= elastic_slip(site);
     const unsigned int p         = surfaces_.pair(site);
+    const double       slip      = std::hypot(input.slip[site][0], input.slip[site][1]);
     const double       value     = input.pressure[site] - normal_augmentation(site) * input.distance[site];
     const double       threshold = limits_[p].threshold(value, now_.friction_factor[site], friction_point(site));
     return pairs_[p].tangential_augmentation_factor * normal_augmentation(site) * surfaces_.face_size(p) / depth *
@@ -269,6 +262,15 @@ namespace Nodus
         found.push_back(c);
       }
 
+    // Stick would take a site that closes back to where the increment began: one that has come farther than friction
+    // can hold slips. So does one that has opened in this loop: stick may be what pulled it open.
+    const auto held = [&](const unsigned int k)
+    {
+      if (opened_[k])
+        return false;
+      return elastic_slip(k) > 0. ? std::hypot(input.slip[k][0], input.slip[k][1]) <= elastic_slip(k)
+                                  : can_stick(input, k, surfaces_.face_size(surfaces_.pair(k)));
+    };
     for (unsigned int i = 0; i < result.sites.size(); ++i)
     {
       const unsigned int k = result.sites[i];
@@ -276,9 +278,7 @@ namespace Nodus
       if (found[i] == Contradiction::tension)
         opened_[k] = true;
       else
-        now_.stick[k] =
-            found[i] == Contradiction::against_slip ||
-            (found[i] == Contradiction::penetration && can_stick(input, k, surfaces_.face_size(surfaces_.pair(k))));
+        now_.stick[k] = found[i] == Contradiction::against_slip || (found[i] == Contradiction::penetration && held(k));
       ++ledger_[k].changes;
       ledger_[k].last = found[i];
     }
