@@ -75,9 +75,10 @@ namespace Nodus
     update_floor();
   }
 
+  /// In a merged loop: in a status loop Newton's method has to converge before a site that should stick can do so.
   bool Status::gains_friction(const unsigned int site) const
   {
-    return surfaces_.is_owned(site) && friction(site) && !had_friction_[site] && !holds_friction(site) &&
+    return merged_ && surfaces_.is_owned(site) && friction(site) && !had_friction_[site] && !holds_friction(site) &&
            pairs_[surfaces_.pair(site)].contact_law != ContactPairParameters::ContactLaw::tied;
   }
 
