@@ -218,7 +218,7 @@ namespace Nodus
 
   void ContactInterface::begin_friction()
   {
-    if (status_.gains_friction())
+    if (has_friction() && status_.gains_friction())
       status_.begin_friction(status_input(), depths_);
   }
 

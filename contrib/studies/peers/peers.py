@@ -3,8 +3,8 @@
 
     peers.py [--time-limit S] [CASE ...]    (default: all)
 
-Writes <case>.csv and ../../doc/gallery/<case>_peers.png (forces over the time) and peers.md; cases that are not named keep their rows of peers.json. Needs ccx
-(Debian: calculix-ccx). NODUS names the program, CCX that of CalculiX.
+Writes <case>.csv and ../../doc/gallery/<case>_peers.png (forces over the time) and peers.md; cases that are not named keep
+their rows of peers.json. Needs ccx (Debian: calculix-ccx). NODUS names the program, CCX that of CalculiX.
 """
 
 import argparse
