@@ -28,14 +28,14 @@ namespace Nodus
 
   dealii::Quadrature<2> face_rule(const ContactPairParameters &pair, const unsigned int degree)
   {
-    using Rule          = ContactPairParameters::QuadratureRule;
-    const bool   points = pair.scheme == ContactPairParameters::Scheme::integration_point;
-    const bool   gauss  = pair.quadrature_rule == Rule::gauss;
-    unsigned int n      = pair.quadrature_points;
-    if (n == 0 && points)
-      n = gauss ? degree + 1 : 2 * degree + 1;
-    else if (n == 0)
+    using Rule         = ContactPairParameters::QuadratureRule;
+    using Scheme       = ContactPairParameters::Scheme;
+    const bool   gauss = pair.quadrature_rule == Rule::gauss;
+    unsigned int n     = pair.quadrature_points;
+    if (n == 0 && pair.scheme == Scheme::averaged)
       n = gauss ? (degree == 1 ? 6 : 10) : 7; // Gauss: within 1 % on non-matching patch tests
+    else if (n == 0)
+      n = !gauss ? 2 * degree + 1 : pair.scheme == Scheme::nodal ? degree + 2 : degree + 1;
     switch (pair.quadrature_rule)
     {
       case Rule::gauss:

@@ -7,9 +7,11 @@
 
 namespace Nodus
 {
-  /// The fixed rule of a pair on slave faces of @p degree, on [0, 1]^2, for the integration point scheme and for the
-  /// averaged scheme by face. Automatic number of points per direction: degree + 1 for the former; for the latter
-  /// enough to see the master edges inside a slave face.
+  /// The fixed rule of a pair on slave faces of @p degree, on [0, 1]^2, for the integration point scheme, for
+  /// consistent weights and for the averaged scheme by face. Automatic number of points per direction: degree + 1 for
+  /// integration points, one more for consistent weights (products of shape functions exact on faces that are not
+  /// parallelograms), for the averaged scheme enough to see the master edges inside a slave face; closed rules 2 degree
+  /// + 1.
   dealii::Quadrature<2> face_rule(const ContactPairParameters &pair, unsigned int degree);
 } // namespace Nodus
 

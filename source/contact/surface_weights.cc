@@ -1,5 +1,6 @@
 #include "contact/surface_weights.h"
 #include "contact/averaged_jump.h"
+#include "contact/face_rule.h"
 
 #include <deal.II/base/quadrature_lib.h>
 
@@ -9,10 +10,12 @@ namespace Nodus
   {
     constexpr unsigned int no_site = dealii::numbers::invalid_unsigned_int;
 
-    /// Rule whose sum over a face gives the nodal areas: the nodes themselves, or Gauss points.
-    dealii::Quadrature<2> area_rule(const unsigned int degree, const ContactPairParameters::Weights weights)
+    /// Rule whose sum over a face gives the nodal areas: the nodes themselves, Gauss points, or the rule of the pair.
+    dealii::Quadrature<2> area_rule(const unsigned int degree, const ContactPairParameters &pair)
     {
-      if (weights != ContactPairParameters::Weights::nodal_quadrature)
+      if (pair.weights == ContactPairParameters::Weights::consistent)
+        return face_rule(pair, degree);
+      if (pair.weights == ContactPairParameters::Weights::dual)
         return dealii::QGauss<2>(degree + 2);
       if (degree == 1)
         return dealii::Quadrature<2>(dealii::QTrapezoid<1>());
@@ -56,7 +59,7 @@ namespace Nodus
     {
       if (pairs[p].scheme == Scheme::integration_point)
         continue;
-      const auto             rule = area_rule(surfaces.degree(), pairs[p].weights);
+      const auto             rule = area_rule(surfaces.degree(), pairs[p]);
       std::vector<FaceShape> shapes;
       for (const auto &q : rule.get_points())
         shapes.emplace_back(surfaces.degree(), q[0], q[1]);

@@ -24,8 +24,9 @@ namespace Nodus
   /// Quadrature of the slave surfaces (eq. W1): M_ij = sum over points of weight phi_i phi_j, m_j of weight phi_j.
   ///
   /// `nodal quadrature` (trapezoid, Simpson) and `dual` (biorthogonal multipliers, m_j = int phi_j) have one point a
-  /// node, so that every product of filtered fields is nodal; `consistent` has Gauss points. The averaged scheme has
-  /// one point a node with the area of its jump, the integration point scheme the points of its rule.
+  /// node, so that every product of filtered fields is nodal; `consistent` has the points of the rule of the pair. The
+  /// averaged scheme has one point a node with the area of its jump, the integration point scheme the points of its
+  /// rule.
   class SurfaceWeights
   {
   public:

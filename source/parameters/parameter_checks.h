@@ -69,7 +69,8 @@ namespace Nodus
     void check(const Section &section, const MaterialParameters &material);
     /// Of a rigid body, which has none.
     void refuse_material(const Section &section, const MaterialParameters &material);
-    void check(const Section &section, const ContactPairParameters &pair, unsigned int n_bodies);
+    /// @p degree of the displacement.
+    void check(const Section &section, const ContactPairParameters &pair, unsigned int n_bodies, unsigned int degree);
     void check(const Section                     &section,
                const BoundaryConditionParameters &condition,
                unsigned int                       n_bodies,

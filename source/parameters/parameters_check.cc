@@ -283,7 +283,7 @@ namespace Nodus
     for (unsigned int i = 0; i < contact_pairs.size(); ++i)
     {
       const Section section{file, "Contact pair " + std::to_string(i + 1)};
-      Nodus::check(section, contact_pairs[i], n_bodies);
+      Nodus::check(section, contact_pairs[i], n_bodies, degree);
       ParameterChecks::check(section, contact_pairs[i], "pair", load_stepping.interval_ends);
       const ContactPairParameters &pair = contact_pairs[i];
       check_bodies(section, pair, bodies);

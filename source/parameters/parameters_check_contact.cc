@@ -304,9 +304,29 @@ namespace Nodus
                       "there how it moves");
       check(section, surface.motion, "Master ", surface.motion.rotation_axis == Vector3() ? surface.axis : Vector3());
     }
+
+    /// With no more points than the degree rows of M (eq. W1) depend on each other, or are empty.
+    void check_rule(const Section &section, const ContactPairParameters &pair, const unsigned int degree)
+    {
+      using Rule           = ContactPairParameters::QuadratureRule;
+      const unsigned int n = pair.quadrature_points;
+      section.require(n == 0 || pair.quadrature_rule != Rule::simpson || (n >= 3 && n % 2 == 1),
+                      "Quadrature points",
+                      "is " + std::to_string(n) + "; Simpson's rule takes an odd number from 3");
+      section.require(n == 0 || pair.quadrature_rule != Rule::newton_cotes || (n >= 2 && n <= 5) || n == 7,
+                      "Quadrature points",
+                      "is " + std::to_string(n) + "; Newton-Cotes rules with positive weights have 2, 3, 4, 5 or 7");
+      section.require(n == 0 || n > degree || pair.weights != ContactPairParameters::Weights::consistent,
+                      "Quadrature points",
+                      "is " + std::to_string(n) + "; consistent weights with 'Degree = " + std::to_string(degree) +
+                          "' take " + std::to_string(degree + 1) + " or more");
+    }
   } // namespace
 
-  void ParameterChecks::check(const Section &section, const ContactPairParameters &pair, const unsigned int n_bodies)
+  void ParameterChecks::check(const Section               &section,
+                              const ContactPairParameters &pair,
+                              const unsigned int           n_bodies,
+                              const unsigned int           degree)
   {
     check_friction(section, pair);
     check_gap_law(section, pair);
@@ -326,16 +346,9 @@ namespace Nodus
     check_master(section, pair, n_bodies);
 
     using Scheme = ContactPairParameters::Scheme;
-    using Rule   = ContactPairParameters::QuadratureRule;
     section.require(pair.scheme == Scheme::nodal || pair.weights == ContactPairParameters::Weights::nodal_quadrature,
                     "Weights",
                     "is a choice of 'Scheme = nodal' alone; the other schemes bring their own weights: remove the key");
-    const unsigned int n = pair.quadrature_points;
-    section.require(n == 0 || pair.quadrature_rule != Rule::simpson || (n >= 3 && n % 2 == 1),
-                    "Quadrature points",
-                    "is " + std::to_string(n) + "; Simpson's rule takes an odd number from 3");
-    section.require(n == 0 || pair.quadrature_rule != Rule::newton_cotes || (n >= 2 && n <= 5) || n == 7,
-                    "Quadrature points",
-                    "is " + std::to_string(n) + "; Newton-Cotes rules with positive weights have 2, 3, 4, 5 or 7");
+    check_rule(section, pair, degree);
   }
 } // namespace Nodus

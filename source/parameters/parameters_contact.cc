@@ -202,15 +202,17 @@ namespace Nodus
                  integration_names,
                  "Averaged scheme [-]: over whole slave faces with a fixed rule, or exactly over the overlaps of slave "
                  "and master faces.");
-      add_choice(prm,
-                 "Quadrature rule",
-                 pair.quadrature_rule,
-                 rule_names,
-                 "Rule on slave faces of the integration point scheme and of the averaged scheme by face [-].");
+      add_choice(
+          prm,
+          "Quadrature rule",
+          pair.quadrature_rule,
+          rule_names,
+          "Rule on slave faces of the integration point scheme, of consistent weights and of the averaged scheme "
+          "by face [-].");
       prm.add_parameter("Quadrature points",
                         pair.quadrature_points,
                         "Points of that rule in each direction of a face [-]: Gauss any, Simpson odd, Newton-Cotes 2, "
-                        "3, 4, 5 or 7; 0: automatic.",
+                        "3, 4, 5 or 7; consistent weights take more points than the degree; 0: automatic.",
                         Patterns::Integer(0, 20));
     }
 

@@ -237,7 +237,7 @@ namespace Nodus
     double                     tangential_augmentation_factor = 0.1; ///< times rho_n/|mu lambda_s| gives rho_tau
     Scheme                     scheme                         = Scheme::averaged;
     Integration                integration                    = Integration::segment; ///< averaged scheme
-    QuadratureRule             quadrature_rule      = QuadratureRule::gauss; ///< integration points, averaged by face
+    QuadratureRule             quadrature_rule      = QuadratureRule::gauss; ///< points, consistent, averaged by face
     unsigned int               quadrature_points    = 0; ///< per direction of a slave face; 0 = automatic
     SurfaceMeasure             surface_measure      = SurfaceMeasure::current;
     Weights                    weights              = Weights::nodal_quadrature;
