@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 namespace Nodus
 {
@@ -55,6 +56,7 @@ namespace Nodus
             const unsigned int normal = f / 2, a = normal == 0 ? 1 : 0, b = normal == 2 ? 1 : 2;
             FaceRecord         record{};
             // e_a x e_b = -e_normal for normal = y
+            std::fill(std::begin(record.normal_share), std::end(record.normal_share), 1.);
             record.orientation = (normal == 1 ? -1. : 1.) * (f % 2 == 1 ? 1. : -1.);
             record.pair        = pair;
             record.side        = side;
@@ -192,6 +194,10 @@ namespace Nodus
       }
     for (const auto &[other, faces] : sparse_exchange(communicator, outgoing))
       at_own_nodes_.insert(at_own_nodes_.end(), faces.begin(), faces.end());
+    std::sort(at_own_nodes_.begin(),
+              at_own_nodes_.end(),
+              [](const FaceRecord &a, const FaceRecord &b)
+              { return std::tie(a.pair, a.side, a.number) < std::tie(b.pair, b.side, b.number); });
     for (unsigned int f = 0; f < at_own_nodes_.size(); ++f)
     {
       const FaceRecord &face = at_own_nodes_[f];
@@ -199,6 +205,8 @@ namespace Nodus
         if (owner(dof) == rank_)
           incident_[{2 * face.pair + face.side, dof}].push_back(f);
     }
+    if (dof_handler_.get_fe().degree == 1)
+      share_normals();
   }
 
   void FaceDirectory::add_layer(std::vector<FaceRecord> &faces) const

@@ -8,6 +8,7 @@
 #include <deal.II/fe/mapping.h>
 
 #include <map>
+#include <set>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -34,6 +35,8 @@ namespace Nodus
     unsigned int body;      ///< its number, from 1
     DoFIndex     across[4]; ///< first degrees of freedom of the corners of the face across the cell, ...
     double       X_across[4][dim]; ///< ... and where they are
+    /// Of degree 1: the face's share in the averaged normals of its corners (eq. P7).
+    double normal_share[4];
     /// Of pairs that touch themselves: the sides of other pairs, numbered 2 pair + side, that the face belongs to and
     /// that come before this one.
     std::vector<unsigned int> elsewhere;
@@ -65,7 +68,8 @@ namespace Nodus
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)
     {
-      archive &dofs &X &orientation &pair &side &rank &number &cell &body &across &X_across &elsewhere &followers;
+      archive &dofs &X &orientation &pair &side &rank &number &cell &body &across &X_across &normal_share &elsewhere
+          &followers;
     }
     bool operator<(const FaceRecord &other) const
     {
@@ -114,6 +118,12 @@ namespace Nodus
     using NodeKey = std::pair<unsigned int, DoFIndex>; ///< 2 pair + side, first degree of freedom
 
     void share_multipliers();
+    /// Finds FaceRecord::normal_share of all faces.
+    void share_normals();
+    /// Ranks that have the face: its own and those of the nodes of its basis functions.
+    std::set<unsigned int> holders(const FaceRecord &face) const;
+    /// The faces of one side around a node, as indices into at_own_nodes_ and the corner that the node is.
+    std::vector<std::pair<unsigned int, unsigned int>> corners_at(const NodeKey &node) const;
     /// First degrees of freedom of the nodes whose basis functions are not zero on a face: its free ones and those that
     /// its hanging ones follow.
     std::vector<DoFIndex> support(const FaceRecord &face) const;

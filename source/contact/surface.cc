@@ -176,6 +176,8 @@ namespace Nodus
       for (unsigned int n = 0; n < 4; ++n)
         face.across[n] = node(record.across[n]);
     face.elsewhere = record.elsewhere;
+    if (degree_ == 1)
+      std::copy(std::begin(record.normal_share), std::end(record.normal_share), face.normal_share.begin());
     for (const auto &follower : record.followers)
     {
       if (face.hanging.empty() || face.hanging.back().n != follower.n)

@@ -36,6 +36,9 @@ namespace Nodus
     std::vector<unsigned int> slaves = {};
     std::vector<double> basis = {}; ///< ... and these in the face's shape functions, [node][slave]; empty: the same
 
+    /// Of each node, this face's in the averaged normal there (eq. P7).
+    std::array<double, 9> normal_share = {{1., 1., 1., 1., 1., 1., 1., 1., 1.}};
+
     const Follower *follower(const unsigned int n) const
     {
       for (const Follower &follower : hanging)

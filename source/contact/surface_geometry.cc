@@ -120,15 +120,17 @@ namespace Nodus
   void SurfaceGeometry::for_faces(const unsigned int node, const unsigned int own, const Function &g) const // eq. P6
   {
     for (unsigned int i = start_[node]; i < start_[node + 1]; ++i)
-      if (const Fading fading = belongs(unit_[occurrence_[i]], unit_[own]); fading.part > 0.)
+      if (const Fading fading = belongs_to_surface(unit_[occurrence_[i]], unit_[own]); fading.part > 0.)
         g(occurrence_[i], fading);
   }
 
   Vector3 SurfaceGeometry::weighted_normal(const unsigned int at) const
   {
     const SurfaceFace &face = faces_[at / node_shapes_.size()];
-    const FaceGeometry geometry(face, node_shapes_[at % node_shapes_.size()], positions_);
-    return face.orientation / (geometry.d_xi.norm_square() * geometry.d_eta.norm_square()) * geometry.area_vector();
+    const unsigned int n    = at % node_shapes_.size();
+    const FaceGeometry geometry(face, node_shapes_[n], positions_);
+    return face.normal_share[n] * face.orientation / (geometry.d_xi.norm_square() * geometry.d_eta.norm_square()) *
+           geometry.area_vector();
   }
 
   Vector3 SurfaceGeometry::sum_of_normals(const unsigned int node, const unsigned int own) const
@@ -253,10 +255,11 @@ namespace Nodus
                 const FaceShape   &shape = node_shapes_[other % node_shapes_.size()];
                 const FaceGeometry geometry(face, shape, positions_);
                 const Vector3     &a = geometry.d_xi, &b = geometry.d_eta;
-                const double       scale  = fading.part * face.orientation / (a.norm_square() * b.norm_square());
-                const Vector3      normal = scale * geometry.area_vector();
-                const auto to_a = -scale * cross_matrix(b) - 2. / a.norm_square() * dealii::outer_product(normal, a);
-                const auto to_b = scale * cross_matrix(a) - 2. / b.norm_square() * dealii::outer_product(normal, b);
+                const double scale = fading.part * face.normal_share[other % node_shapes_.size()] * face.orientation /
+                                     (a.norm_square() * b.norm_square());
+                const Vector3 normal = scale * geometry.area_vector();
+                const auto    to_a = -scale * cross_matrix(b) - 2. / a.norm_square() * dealii::outer_product(normal, a);
+                const auto    to_b = scale * cross_matrix(a) - 2. / b.norm_square() * dealii::outer_product(normal, b);
                 for (unsigned int m = 0; m < shape.n; ++m)
                   if (shape.d_xi[m] != 0. || shape.d_eta[m] != 0.)
                     add(derivative, face.nodes[m], factor * (shape.d_xi[m] * to_a + shape.d_eta[m] * to_b));

@@ -36,6 +36,13 @@ namespace Nodus
     double part, slope; ///< slope: by the measure
   };
 
+  /// How much a face of the unit normal @p unit belongs to a smooth surface that looks along @p normal: 1 within 45
+  /// degrees, 0 from 60 degrees on, where there is an edge between them (eq. P6).
+  inline Fading belongs_to_surface(const Vector3 &unit, const Vector3 &normal)
+  {
+    return Fading(unit * normal, 0.70710678, 0.5);
+  }
+
   /// Shape of the faces of one side at given positions, with normals averaged at the nodes.
   ///
   /// Faces of degree 1 may be smoothed: the middle of each edge moves onto the circular arc that meets the averaged
@@ -147,13 +154,6 @@ namespace Nodus
     void nodal_normal_derivative(unsigned int f, unsigned int n, std::vector<NodeDerivative> &derivative) const;
 
   private:
-    /// How much a face of the unit normal @p unit belongs to a smooth surface that looks along @p normal: 1 within 45
-    /// degrees, 0 from 60 degrees on, where there is an edge between them.
-    static Fading belongs(const Vector3 &unit, const Vector3 &normal)
-    {
-      return Fading(unit * normal, 0.70710678, 0.5);
-    }
-
     const std::vector<SurfaceFace>           &faces_;
     const std::vector<Point>                 &positions_;
     const std::vector<std::array<bool, dim>> &fixed_; ///< components of each node
@@ -218,7 +218,7 @@ namespace Nodus
     const unsigned int n_line = degree_ + 1, n_face = n_line * n_line;
     double             sum = 0.;
     for (unsigned int o = start_[node]; o < start_[node + 1]; ++o)
-      sum += belongs(unit_[occurrence_[o]], normal).part;
+      sum += belongs_to_surface(unit_[occurrence_[o]], normal).part;
     if (sum < 0.1) // nothing looks that way
     {
       f(node, 1.);
@@ -230,7 +230,8 @@ namespace Nodus
       const unsigned int i = n % n_line, j = n / n_line;
       const unsigned int i_begin = i > 0 ? i - 1 : 0, i_end = std::min(i + 2, n_line);
       const unsigned int j_begin = j > 0 ? j - 1 : 0, j_end = std::min(j + 2, n_line);
-      const double part = belongs(unit_[occurrence_[o]], normal).part / (sum * (i_end - i_begin) * (j_end - j_begin));
+      const double       part =
+          belongs_to_surface(unit_[occurrence_[o]], normal).part / (sum * (i_end - i_begin) * (j_end - j_begin));
       for (unsigned int l = j_begin; l < j_end; ++l)
         for (unsigned int k = i_begin; k < i_end; ++k)
           f(faces_[face].nodes[l * n_line + k], part);

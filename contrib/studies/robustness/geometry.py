@@ -115,6 +115,101 @@ def fading(cosine, all_, none):
     return t**2 * (3 - 2 * t)
 
 
+def geometric_median(points, counts, scale):
+    """Of points (n, 2) by Weiszfeld's iteration; distances below a millionth of the scale are not told apart."""
+    median = counts @ points / counts.sum()
+    for _ in range(100):
+        pull = counts / np.hypot(np.linalg.norm(points - median, axis=1), 1e-6 * scale)
+        median = pull @ points / pull.sum()
+    return median
+
+
+def combination(tilts, target, parts):
+    """(P7): parts >= 0 of sum one, near to the given ones, of tilts (n, 2) that add up to the target, or to what is nearest to it:
+    exchanges between pairs."""
+    parts, first, hold = parts.copy(), parts, 1e-6 * (tilts**2).sum()
+    for _ in range(200):
+        before = parts.copy()
+        for a in range(len(parts)):
+            for b in range(a):
+                rest, apart = parts @ tilts - target, tilts[a] - tilts[b]
+                pull = rest @ apart + hold * (parts[a] - first[a] - parts[b] + first[b])
+                step = np.clip(-pull / (apart @ apart + 2 * hold), -parts[a], parts[b])
+                parts[a], parts[b] = parts[a] + step, parts[b] - step
+        if np.abs(parts - before).max() < 1e-9:
+            break
+    return parts
+
+
+def share_at_node(own, unit, weight, seen, turn, inside, rim):
+    """(P7): share of face `own` in the averaged normal of a node; unit normals of its faces there, and the normals that they see at
+    the node from their middles and other corners, how far these are from those in the middles; whether their far corner is inside of
+    the surface; direction of the rim or None."""
+    part = fading(unit @ unit[own], SMOOTH, SHARP)
+    average = (part * weight) @ unit
+    average /= np.linalg.norm(average)
+    if rim is None:
+        along = np.linalg.svd(average[None])[2][1:]
+    else:
+        direction = rim - rim @ average * average
+        along = np.stack([direction / np.linalg.norm(direction), np.zeros(3)])
+    belongs = np.where(part > 0)[0]
+    chosen = belongs[inside[belongs]] if inside.any() else belongs
+    sides, tilts = seen[chosen] @ along.T, unit[belongs] @ along.T
+    largest = np.linalg.norm(tilts, axis=1).max()
+    if len(sides) < 2 or largest < 1e-3:
+        return 1.0
+    points, counts = np.vstack([sides, np.zeros(2)]), np.append(np.ones(len(sides)), len(sides) / 2)
+    found = geometric_median(points, counts, largest)
+    length = np.linalg.norm(found)
+    ratio = length / max(np.abs(tilts @ found).max() / max(length, 1e-300), 0.2 * largest)
+    strength = fading(ratio, 0.5, 0.2) * fading(length, 2e-3, 1e-3)  # smaller angles are those of rounded coordinates
+    if strength == 0:
+        return 1.0
+    flat = 1 / (turn[chosen] ** 2 + (1e-3 * largest) ** 2)
+    better = flat @ sides / flat.sum()  # what the flatter side sees
+    target = strength * (better if np.linalg.norm(better - found) < 0.5 * length else found)
+    first = (part * weight)[belongs] / (part * weight)[belongs].sum()
+    parts = combination(tilts, target, first)
+    if np.linalg.norm(parts @ tilts - target) >= 0.3 * np.linalg.norm(target):
+        return 1.0
+    share = parts / first
+    return max(share[list(belongs).index(own)] / share.max(), 1e-6)
+
+
+def normal_shares(faces, X):
+    """(P7) of faces (m, 4) at their nodes, from the reference positions X."""
+    c = X[faces]
+    t1, t2 = c[:, [1, 1, 3, 3]] - c[:, [0, 0, 2, 2]], c[:, [2, 3, 2, 3]] - c[:, [0, 1, 0, 1]]
+    area = np.cross(t1, t2)
+    length = np.linalg.norm(area, axis=2)
+    unit, weight = area / length[..., None], length / ((t1**2).sum(2) * (t2**2).sum(2))
+    middle = np.cross(c[:, 3] - c[:, 0], c[:, 2] - c[:, 1])
+    middle /= np.linalg.norm(middle, axis=1)[:, None]
+    around, edges = {}, {}
+    for f, nodes in enumerate(faces):
+        for n, node in enumerate(nodes):
+            around.setdefault(node, []).append((f, n))
+            for m in (n ^ 1, n ^ 2):
+                edges.setdefault(node, []).append(nodes[m])
+    rims, averaged = {}, np.zeros_like(unit)
+    for node, corners in around.items():
+        ends = [other for other in edges[node] if edges[node].count(other) == 1]
+        rims[node] = X[ends[1]] - X[ends[0]] if len(ends) > 1 else None
+        f, n = np.array(corners).T
+        averaged[f, n] = fading(unit[f, n] @ unit[f, n].T, SMOOTH, SHARP) @ (weight[f, n][:, None] * unit[f, n])
+    averaged /= np.linalg.norm(averaged, axis=2)[..., None]
+    seen = 2 * middle[:, None] + averaged - averaged.sum(1)[:, None] / 2  # the middle is the mean of the corners
+    turn = np.linalg.norm(seen - middle[:, None], axis=2)
+    share = np.ones(faces.shape)
+    for node, corners in around.items():
+        f, n = np.array(corners).T
+        inside = np.array([rims[other] is None for other in faces[f, 3 - n]])
+        for i in range(len(f)):
+            share[f[i], n[i]] = share_at_node(i, unit[f, n], weight[f, n], seen[f, n], turn[f, n], inside, rims[node])
+    return share
+
+
 class Surface:
     """A set of faces of Bodies, `smoothed` (P2) or not. Positions of points come from the smoothed faces, areas and
     displacements from those of the nodes."""
@@ -129,7 +224,8 @@ class Surface:
         t1, t2 = np.einsum("qa,fac->fqc", d1, corners), np.einsum("qa,fac->fqc", d2, corners)
         area = np.cross(t1, t2)
         self.unit = area / np.linalg.norm(area, axis=2)[..., None]
-        self._average(area / ((t1**2).sum(2) * (t2**2).sum(2))[..., None])
+        share = normal_shares(self.faces, bodies.X) if self.degree == 1 else np.ones(self.faces.shape)
+        self._average((share / ((t1**2).sum(2) * (t2**2).sum(2)))[..., None] * area)
         self.bulge = self._bulge(corners)
         self.shape_degree, self.shape_points = self.degree, corners
         if smoothed and self.degree == 1:
