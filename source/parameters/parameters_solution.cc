@@ -184,6 +184,12 @@ namespace Nodus
                         load.increments,
                         "Number of equal increments of each interval [-], unless they fail or grow.",
                         Patterns::List(Patterns::Integer(1, 1000000), 1, many, ","));
+      prm.add_parameter(
+          "Predictor",
+          load.predictor,
+          "Whether an increment starts where the motion of the last one leads, from the second of each "
+          "interval on [-]. It saves iterations where the path is smooth and bodies yield or slide; where "
+          "Newton's method fails from there, it starts from the last state.");
       prm.add_parameter("Cut back",
                         load.cut_back,
                         "Whether an increment that fails is halved and tried again [-]. After an easy one (see Easy "

@@ -272,10 +272,32 @@ namespace Nodus
       hanging_.distribute(u);
   }
 
+  void RigidBodies::keep_motion(const std::vector<State> &before)
+  {
+    for (unsigned int i = 0; i < bodies_.size(); ++i)
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        now_[i].motion[c]       = now_[i].translation[c] - before[i].translation[c];
+        now_[i].motion[dim + c] = now_[i].turn[c];
+      }
+  }
+
+  void RigidBodies::go_on(const double part)
+  {
+    std::vector<double> step;
+    for (unsigned int i = 0; i < bodies_.size(); ++i)
+    {
+      const Components rest = missing(i);
+      for (unsigned int c = 0; c < n_components; ++c)
+        step.push_back(bodies_[i].free[c] ? part * now_[i].motion[c] : rest[c]);
+    }
+    advance(1., step);
+  }
+
   void RigidBodies::end_increment(const std::vector<Components> &applied)
   {
     for (unsigned int i = 0; i < bodies_.size(); ++i)
-      now_[i] = {now_[i].translation, Vector3(), turned(i), bodies_[i].prescribed_rotation, applied[i]};
+      now_[i] = {now_[i].translation, Vector3(), turned(i), bodies_[i].prescribed_rotation, applied[i], now_[i].motion};
   }
 
   double RigidBodies::work(const std::vector<State> &before, const std::vector<Components> &applied) const

@@ -40,13 +40,15 @@ namespace Nodus
       dealii::Tensor<2, dim> rotation = dealii::unit_symmetric_tensor<dim>(); ///< R_begin
       Vector3                prescribed_rotation; ///< rotation vector of the prescribed motion as the increment begins
       Components             applied{}; ///< forces and moments then, also those that hold prescribed components
+      Components             motion{};  ///< translation and rotation vector of the last increment
 
       template <typename Archive>
       void serialize(Archive &archive, const unsigned int)
       {
         archive &translation &turn &rotation &prescribed_rotation;
-        for (double &value : applied)
-          archive &value;
+        for (Components *const components : {&applied, &motion})
+          for (double &value : *components)
+            archive &value;
       }
     };
 
@@ -139,6 +141,12 @@ namespace Nodus
     void advance(double factor, const std::vector<double> &correction);
     /// Sets the displacements of the nodes, owned ones, and of what hangs on coupled faces. Collective.
     void move(Vector &u) const;
+
+    /// What has been moved since the states @p before is what go_on() goes on along.
+    void keep_motion(const std::vector<State> &before);
+    /// Free components move by @p part of that, the others to their prescribed values. @throws SolverFailure like
+    /// advance().
+    void go_on(double part);
 
     /// The increment ends here with the forces and moments @p applied to each body: the next one begins.
     void end_increment(const std::vector<Components> &applied);

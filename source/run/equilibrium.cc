@@ -46,7 +46,7 @@ namespace Nodus
     const BlockLayout &layout = model_.contact->surfaces().layout();
     system_.layout            = &layout;
     layout.reinit(system_.rhs);
-    layout.reinit(iterate_);
+    layout.reinit(iterate_.unknowns);
     u_.reinit(layout.owned[0], model_.relevant, model_.communicator);
     for (Vector *v : {&forces_.internal,
                       &forces_.external,
@@ -99,12 +99,46 @@ namespace Nodus
   {
     merged_   = merged;
     singular_ = false;
+    guess_    = false;
     if (arc_length_.acts() && increment_.end != increment_.begin) // of the attempt before
     {
       increment_.end = increment_.begin;
       impose();
     }
     model_.contact->begin_attempt();
+  }
+
+  bool Equilibrium::predict()
+  {
+    const State &last = states_.committed;
+    if (last.motion_time == 0. || increment_.begins_interval() || increment_.on_new_mesh() || increment_.arc > 0.)
+      return false;
+    u_                = states_.now.unknowns.block(0);
+    constraints_      = &model_.boundary_conditions->increment_constraints(u_);
+    const double part = increment_.duration() / last.motion_time;
+    Vector       motion(last.motion);
+    motion *= part;
+    constraints_->distribute(motion);
+    Vector &u = states_.now.unknowns.block(0);
+    u += motion;
+    model_.rigid_bodies.go_on(part);
+    model_.rigid_bodies.move(u);
+    guess_ = model_.contact->visible_part(last.unknowns.block(0), u) == 1.;
+    if (guess_)
+      return true;
+    u                 = last.unknowns.block(0);
+    states_.now.rigid = last.rigid;
+    return false;
+  }
+
+  void Equilibrium::keep_motion(const bool guides)
+  {
+    State       &now   = states_.now;
+    const State &start = states_.committed;
+    now.motion         = now.unknowns.block(0);
+    now.motion -= start.unknowns.block(0);
+    now.motion_time = guides ? increment_.duration() : 0.;
+    model_.rigid_bodies.keep_motion(start.rigid);
   }
 
   void Equilibrium::begin_loops()
@@ -246,6 +280,7 @@ namespace Nodus
 
   unsigned int Equilibrium::solve(BlockVector &correction, const double relative_tolerance)
   {
+    guess_ = false;
     // A converged iterate never needs it, and far from balance it leads astray: sites pass on to other faces.
     if (merged_.geometry && !scattered_)
     {
@@ -253,9 +288,9 @@ namespace Nodus
       model_.contact->add_geometry_tangent(system_);
     }
     model_.solid->add_variation(u_, *constraints_, system_);
-    const auto timer = journal_.profile.time(Phase::solver_iterations);
-    iterate_         = states_.now.unknowns;
-    rigid_iterate_   = states_.now.rigid;
+    const auto timer  = journal_.profile.time(Phase::solver_iterations);
+    iterate_.unknowns = states_.now.unknowns;
+    iterate_.rigid    = states_.now.rigid;
     std::optional<TimeRates> rates;
     if (arc_length_.acts())
       rates = arc_length_.rates(increment_.end, u_, driven_, merged_.threshold, merged_.geometry);
@@ -325,7 +360,7 @@ namespace Nodus
     if (model_.rigid_bodies.size() == 0 && largest_entry(correction.block(0)) <= seen)
       return;
     move(1., correction);
-    const double part = model_.contact->visible_part(iterate_.block(0), states_.now.unknowns.block(0));
+    const double part = model_.contact->visible_part(iterate_.unknowns.block(0), states_.now.unknowns.block(0));
     if (part == 1.)
       return;
     journal_.count(Remedy::limited_step);
@@ -338,8 +373,8 @@ namespace Nodus
   {
     if (factor < 1.)
       journal_.count(Remedy::shorter_step);
-    states_.now.unknowns = iterate_;
-    states_.now.rigid    = rigid_iterate_;
+    states_.now.unknowns = iterate_.unknowns;
+    states_.now.rigid    = iterate_.rigid;
     const double part    = factor * step_limit_;
     states_.now.unknowns.add(part, correction);
     if (arc_length_.acts())
@@ -349,44 +384,5 @@ namespace Nodus
     }
     model_.rigid_bodies.advance(part, driven_.correction());
     model_.rigid_bodies.move(states_.now.unknowns.block(0));
-  }
-
-  Equilibrium::StatusChanges Equilibrium::update_statuses(const bool closing_only)
-  {
-    const auto           timer   = journal_.profile.time(Phase::status);
-    ContactInterface    &contact = *model_.contact;
-    const Status::Update update  = contact.update_statuses(closing_only);
-    std::vector<char>    statuses(contact.status().size());
-    for (unsigned int s = 0; s < statuses.size(); ++s)
-      statuses[s] = static_cast<char>(contact.status().status(s));
-    journal_.diagnosis.add_statuses(statuses);
-    StatusChanges result{update.changes, update.frozen, ""};
-    if (update.frozen > 0)
-      journal_.count(Remedy::frozen_statuses);
-    if (update.changes == 0)
-      return result;
-    const std::vector<std::string> loci = contact.loci(update.sites, 3);
-    result.first                        = loci.front();
-    journal_.console.remark(std::to_string(update.changes) + " statuses changed, first at " + result.first);
-    if (update.cycles)
-      throw SolverFailure("the statuses cycle; the nodes that change back and forth: " + cycling_,
-                          SolverFailure::Kind::status_cycle);
-    if (update.to_regularised)
-    {
-      journal_.count(Remedy::regularised_law);
-      journal_.console.remark("the statuses do not settle: from here the laws are regularised (multipliers projected "
-                              "at integration points, weights lumped)");
-      contact.pass_to_regularised_law(states_.now.unknowns, states_.committed.unknowns.block(0));
-      ++journal_.counts.fallbacks;
-    }
-    else if (update.period > 0)
-    {
-      cycling_.clear();
-      for (const std::string &locus : loci)
-        cycling_ += (cycling_.empty() ? "" : "; ") + locus;
-      journal_.console.remark("these statuses were met " + std::to_string(update.period) +
-                              (merged_.status ? " iterations ago" : " passes ago"));
-    }
-    return result;
   }
 } // namespace Nodus

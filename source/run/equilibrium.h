@@ -64,6 +64,17 @@ namespace Nodus
     Norms        accept(unsigned int iteration) override;
     unsigned int solve(BlockVector &correction, double relative_tolerance) override;
     void         move(double factor, const BlockVector &correction) override;
+    bool         is_guess() const override
+    {
+      return guess_;
+    }
+
+    /// The attempt starts where the motion of the last increment leads in the time of this one, prescribed
+    /// displacements where they are to be. @returns false where there is no such motion in this interval, or where it
+    /// leads through another surface: then nothing changes. Collective.
+    bool predict();
+    /// The motion of the increment, which has been found, is what the next one goes on along, if it @p guides that.
+    void keep_motion(bool guides);
 
     /// Dashpots of @p rate hold all nodes where @p anchor, displacements, says, besides those of viscous stabilisation
     /// (eq. Y3); 0: none. They last until the next increment begins.
@@ -165,18 +176,22 @@ namespace Nodus
     double                                   relaxed_work_ = 0.;
     Vector                                   bulk_rhs_;              ///< right-hand side before contact
     const dealii::AffineConstraints<double> *constraints_ = nullptr; ///< of the trial
-    BlockVector                              iterate_;               ///< that the correction starts from
-    std::vector<RigidBodies::State>          rigid_iterate_;
-    Increment                                increment_;
-    MergedLoops                              merged_;
-    std::string                              cycling_;
-    DoFIndex                                 null_pivot_        = dealii::numbers::invalid_dof_index;
-    bool                                     singular_          = false;
-    bool                                     unstable_          = false;
-    bool                                     scattered_         = false; ///< an iterate is far from balance
-    bool                                     motions_unknown_   = false; ///< an interval begins
-    double                                   step_limit_        = 1.;    ///< part of the correction that may be taken
-    double                                   prescribed_before_ = 0.; ///< still to be met at the last iterate, relative
+    struct
+    {
+      BlockVector                     unknowns;
+      std::vector<RigidBodies::State> rigid;
+    } iterate_; ///< that the correction starts from
+    Increment   increment_;
+    MergedLoops merged_;
+    std::string cycling_;
+    DoFIndex    null_pivot_        = dealii::numbers::invalid_dof_index;
+    bool        singular_          = false;
+    bool        guess_             = false; ///< predicted, and not corrected yet
+    bool        unstable_          = false;
+    bool        scattered_         = false; ///< an iterate is far from balance
+    bool        motions_unknown_   = false; ///< an interval begins
+    double      step_limit_        = 1.;    ///< part of the correction that may be taken
+    double      prescribed_before_ = 0.;    ///< still to be met at the last iterate, relative
   };
 } // namespace Nodus
 

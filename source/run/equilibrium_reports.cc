@@ -1,7 +1,7 @@
 #include "run/equilibrium.h"
 #include "run/unheld_bodies.h"
 
-// What others hear of an equilibrium: forces, and what nothing holds.
+// What others hear of an equilibrium: forces, statuses that change, and what nothing holds.
 
 namespace Nodus
 {
@@ -56,5 +56,44 @@ namespace Nodus
                                increment_,
                                first +
                                    (untold ? ", set 'Linear solver/Type = direct' if a slender part resists it" : ""));
+  }
+
+  Equilibrium::StatusChanges Equilibrium::update_statuses(const bool closing_only)
+  {
+    const auto           timer   = journal_.profile.time(Phase::status);
+    ContactInterface    &contact = *model_.contact;
+    const Status::Update update  = contact.update_statuses(closing_only);
+    std::vector<char>    statuses(contact.status().size());
+    for (unsigned int s = 0; s < statuses.size(); ++s)
+      statuses[s] = static_cast<char>(contact.status().status(s));
+    journal_.diagnosis.add_statuses(statuses);
+    StatusChanges result{update.changes, update.frozen, ""};
+    if (update.frozen > 0)
+      journal_.count(Remedy::frozen_statuses);
+    if (update.changes == 0)
+      return result;
+    const std::vector<std::string> loci = contact.loci(update.sites, 3);
+    result.first                        = loci.front();
+    journal_.console.remark(std::to_string(update.changes) + " statuses changed, first at " + result.first);
+    if (update.cycles)
+      throw SolverFailure("the statuses cycle; the nodes that change back and forth: " + cycling_,
+                          SolverFailure::Kind::status_cycle);
+    if (update.to_regularised)
+    {
+      journal_.count(Remedy::regularised_law);
+      journal_.console.remark("the statuses do not settle: from here the laws are regularised (multipliers projected "
+                              "at integration points, weights lumped)");
+      contact.pass_to_regularised_law(states_.now.unknowns, states_.committed.unknowns.block(0));
+      ++journal_.counts.fallbacks;
+    }
+    else if (update.period > 0)
+    {
+      cycling_.clear();
+      for (const std::string &locus : loci)
+        cycling_ += (cycling_.empty() ? "" : "; ") + locus;
+      journal_.console.remark("these statuses were met " + std::to_string(update.period) +
+                              (merged_.status ? " iterations ago" : " passes ago"));
+    }
+    return result;
   }
 } // namespace Nodus

@@ -241,10 +241,7 @@ namespace Nodus
     model.solid->start_from(now.history);
     audit_.account();
     if (!parts_.equilibrium.increment().on_new_mesh())
-    {
-      now.motion = now.unknowns.block(0);
-      now.motion -= parts_.states.committed.unknowns.block(0);
-    }
+      parts_.equilibrium.keep_motion(!parts_.strategy.relaxed());
     model.contact->end_increment(parts_.equilibrium.increment().duration());
     model.rigid_bodies.end_increment(parts_.equilibrium.driven().applied());
     if (parts_.equilibrium.increment().ends_interval)
@@ -301,8 +298,7 @@ namespace Nodus
     }
   }
 
-  /// Closed sites that end the increment without a master point slid off the master surface, or went through it: that
-  /// satisfies the equations.
+  /// Closed sites without a master point, which slid off the master or went through it, satisfy the equations, too.
   void LoadPath::warn_of_lost_partners() const
   {
     const ContactInterface   &contact  = *parts_.model.contact;

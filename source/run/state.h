@@ -24,7 +24,8 @@ namespace Nodus
     Vector   reaction; ///< of what was prescribed when the last interval ended; what is released sheds it [force]
     Vector   applied;  ///< loads and reactions as the increment begins [force]
     Energies energies; ///< up to then
-    Vector   motion;   ///< of the last increment, which arc length goes on along [length]
+    Vector   motion;   ///< of the last increment, which the next one goes on along [length]
+    double   motion_time     = 0.; ///< that it took; 0: none that another one could go on along
     double   stiffness_scale = 0.; ///< largest diagonal entry of the first bulk tangent
   };
 
@@ -42,7 +43,8 @@ namespace Nodus
   template <typename AnyState, typename Visitor>
   void visit_members(AnyState &state, Visitor &visitor)
   {
-    auto &[unknowns, contact, rigid, history, reaction, applied, energies, motion, stiffness_scale] = state;
+    auto &[unknowns, contact, rigid, history, reaction, applied, energies, motion, motion_time, stiffness_scale] =
+        state;
     visitor.nodes(unknowns.block(0));
     visitor.nodes(reaction);
     visitor.nodes(applied);
@@ -52,6 +54,7 @@ namespace Nodus
     visitor.cells(history);
     visitor.common(rigid);
     visitor.common(energies);
+    visitor.common(motion_time);
     visitor.common(stiffness_scale);
 
     auto &[statuses, tangents, elastic_slip, area, force, jump, on_new_mesh, stuck] = contact;

@@ -44,33 +44,34 @@ namespace Nodus
     const MergedLoops       coupled = {false, true, false}, none;
     const bool              frozen  = p.threshold_loop.mode != Mode::newton && contact.threshold_follows_pressure();
 
+    const std::vector<Kind> any_kind = {Kind::newton_stalled,
+                                        Kind::newton_limit,
+                                        Kind::status_cycle,
+                                        Kind::inverted_cell,
+                                        Kind::geometry_cycle,
+                                        Kind::loop_limit,
+                                        Kind::not_finite,
+                                        Kind::free_body,
+                                        Kind::over_constraint,
+                                        Kind::linear_solver};
+
     // name, what is merged, what it counts as, what it answers: kinds of failure of the attempt before after which it
-    // has ever helped (contrib/studies/robustness/README.md)
-    std::vector<Attempt> attempts = {{"the loops as they are asked for", asked, {}, {}}};
-    const auto           add      = [&](const bool fits, const Attempt &attempt)
+    // has ever helped (contrib/studies/robustness/README.md); whether it goes on along the last motion
+    std::vector<Attempt> attempts = {{"the loops as they are asked for", asked, {}, {}, p.load_stepping.predictor}};
+    if (attempts.front().goes_on)
+      attempts.push_back({"the last state as the start", asked, {}, any_kind, false});
+    const auto add = [&](const bool fits, const Attempt &attempt)
     {
       if (fits && model_.parameters.strategy.uses(*attempt.remedy))
         attempts.push_back(attempt);
     };
-    add(asked.any(),
-        {"three loops",
-         none,
-         Remedy::three_loops,
-         {Kind::newton_stalled,
-          Kind::newton_limit,
-          Kind::status_cycle,
-          Kind::inverted_cell,
-          Kind::geometry_cycle,
-          Kind::loop_limit,
-          Kind::not_finite,
-          Kind::free_body,
-          Kind::over_constraint,
-          Kind::linear_solver}});
+    add(asked.any(), {"three loops", none, Remedy::three_loops, any_kind, false});
     add(frozen,
         {"the coupled threshold",
          coupled,
          Remedy::coupled_threshold,
-         {Kind::newton_stalled, Kind::newton_limit, Kind::loop_limit}});
+         {Kind::newton_stalled, Kind::newton_limit, Kind::loop_limit},
+         false});
     return attempts;
   }
 
@@ -86,11 +87,15 @@ namespace Nodus
       }
       catch (const SolverFailure &failure)
       {
-        const auto next = std::find_if(
-            attempt + 1,
-            attempts.end(),
-            [&](const Attempt &other)
-            { return std::find(other.answers.begin(), other.answers.end(), failure.kind()) != other.answers.end(); });
+        const auto next =
+            std::find_if(attempt + 1,
+                         attempts.end(),
+                         [&](const Attempt &other)
+                         {
+                           const bool same = !other.remedy && !went_on_; // nothing but another start
+                           return !same && std::find(other.answers.begin(), other.answers.end(), failure.kind()) !=
+                                               other.answers.end();
+                         });
         // without contact all attempts have the same system
         if (next == attempts.end() || (begins_singular() && model_.contact->n_closed() == 0))
           throw;
@@ -99,7 +104,8 @@ namespace Nodus
         journal_.diagnosis.end_attempt(failure.what());
         model_.roll_back(states_);
         ++journal_.counts.fallbacks;
-        journal_.count(*next->remedy);
+        if (next->remedy)
+          journal_.count(*next->remedy);
         attempt = next;
       }
   }
@@ -108,6 +114,7 @@ namespace Nodus
   {
     equilibrium_.begin_attempt(attempt.merged);
     journal_.diagnosis.begin_attempt(attempt.merged.names());
+    went_on_ = attempt.goes_on && equilibrium_.predict();
     loops_.solve();
   }
 
@@ -148,7 +155,10 @@ namespace Nodus
   /// Newton's method finds equilibria that are not stable, too: a strut that has not buckled. Bodies do not stay there.
   void Strategy::leave_if_unstable(const Attempt &attempt)
   {
-    if (!stability_.follow() || !stability_.can_count())
+    // A straight path takes one system, which the softest motion of those before says little about.
+    const bool straight =
+        went_on_ && journal_.counts.newton == 1 && equilibrium_.solver_type() == LinearSolverParameters::Type::direct;
+    if ((!stability_.follow() && !straight) || !stability_.can_count())
       return;
     const unsigned int n = stability_.n_unstable();
     if (n == 0)

@@ -16,7 +16,7 @@ namespace Nodus
     /// All outlive it.
     Strategy(Model &model, Journal &journal, States &states, Equilibrium &equilibrium, IncrementLoops &loops);
 
-    /// A rung of the ladder.
+    /// A rung of the ladder. Those that do not go on start where the last increment ended.
     struct Attempt
     {
       const char *name;
@@ -24,6 +24,7 @@ namespace Nodus
       /// What it is counted as, and the failures of attempts before it after which it is tried; none for the first one.
       std::optional<Remedy>            remedy;
       std::vector<SolverFailure::Kind> answers;
+      bool                             goes_on; ///< along the motion of the last increment, as far as there is one
     };
     /// Those that are of use in the case at hand, in their order.
     std::vector<Attempt> ladder() const;
@@ -44,6 +45,11 @@ namespace Nodus
     const Vector &softest_motion() const
     {
       return stability_.mode();
+    }
+    /// Bodies have been let go in the increment, and have gone elsewhere than loads drove them.
+    bool relaxed() const
+    {
+      return journal_.counts.remedies[Remedy::relaxation] > 0;
     }
     bool may_relax() const
     {
@@ -73,6 +79,7 @@ namespace Nodus
     IncrementLoops &loops_;
     Stability       stability_;
     Relaxation      relaxation_;
+    bool            went_on_ = false; ///< the attempt at hand, along the motion of the last increment
   };
 } // namespace Nodus
 

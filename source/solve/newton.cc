@@ -60,7 +60,7 @@ namespace Nodus
     log(0, norms, 0);
     double       before = 0., forcing = parameters_.largest_forcing_term, best = std::numeric_limits<double>::max();
     unsigned int fewest = std::numeric_limits<unsigned int>::max(), idle = 0;
-    while (!converged(norms))
+    while (problem.is_guess() || !converged(norms))
     {
       if (!std::isfinite(norms.force + norms.contact))
         fail("met numbers that are not finite", norms, SolverFailure::Kind::not_finite);

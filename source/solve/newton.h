@@ -33,6 +33,12 @@ namespace Nodus
     /// Completes the tangent and finds the @p correction, whose linear residual is reduced by @p relative_tolerance at
     /// least. Returns the Krylov iterations.
     virtual unsigned int solve(BlockVector &correction, double relative_tolerance) = 0;
+    /// The iterate is a guess at which no system has been solved: it is corrected once in any case, so that what the
+    /// tangent says of it (stability) is seen.
+    virtual bool is_guess() const
+    {
+      return false;
+    }
     /// trial = iterate + factor * correction: nothing is left of the trial before.
     virtual void move(double factor, const BlockVector &correction) = 0;
   };
@@ -51,7 +57,8 @@ namespace Nodus
     /// Called for each iterate: iteration, norms, Krylov iterations of the correction that led here.
     using Log = std::function<void(unsigned int, const NewtonProblem::Norms &, unsigned int)>;
 
-    /// Solves from the current iterate; no correction when it already satisfies the tolerances without changes.
+    /// Solves from the current iterate; no correction when it already satisfies the tolerances without changes, and is
+    /// no guess.
     /// Corrections are as exact as the next iterate can use: forcing terms of Eisenstat & Walker (1996), choice 2.
     /// A step into states that do not exist (det F <= 0) is halved, a few times at most; with line search, so is one
     /// that increases the largest norm (eq. N5) at the choices that the step was computed with. Every other failure

@@ -23,6 +23,7 @@ namespace
     p.load_stepping.interval_ends     = {0.5, 1.};
     p.load_stepping.increments        = {1, 1};
     p.load_stepping.minimum_increment = 1e-3;
+    p.load_stepping.predictor         = false; // each of the small increments is an interval, and goes on along nothing
     const Outcome cut                 = run(p);
 
     p.load_stepping.interval_ends = cut.times;

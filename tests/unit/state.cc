@@ -64,12 +64,13 @@ namespace
     }
     void operator()(RigidBodies::State &body)
     {
-      auto &[translation, turn, rotation, prescribed_rotation, applied] = body;
+      auto &[translation, turn, rotation, prescribed_rotation, applied, motion] = body;
       (*this)(translation);
       (*this)(turn);
       (*this)(rotation);
       (*this)(prescribed_rotation);
       (*this)(applied);
+      (*this)(motion);
     }
     void operator()(Energies &energies)
     {
@@ -136,7 +137,8 @@ namespace
     }
     void operator()(State &state)
     {
-      auto &[unknowns, contact, rigid, history, reaction, applied, energies, motion, stiffness_scale] = state;
+      auto &[unknowns, contact, rigid, history, reaction, applied, energies, motion, motion_time, stiffness_scale] =
+          state;
       for (unsigned int b = 0; b < unknowns.n_blocks(); ++b)
         (*this)(unknowns.block(b));
       (*this)(contact);
@@ -146,6 +148,7 @@ namespace
       (*this)(applied);
       (*this)(energies);
       (*this)(motion);
+      (*this)(motion_time);
       (*this)(stiffness_scale);
     }
   };

@@ -77,6 +77,7 @@ namespace Nodus
     };
     std::vector<double>       interval_ends = {1.}; ///< increasing times; the first interval starts at 0
     std::vector<unsigned int> increments    = {1};  ///< per interval
+    bool                      predictor     = true; ///< start where the motion of the last increment leads
     bool                      cut_back      = true; ///< halve increments that fail
     double       minimum_increment     = 0.; ///< of time, that cut-backs stop at; 0 = 1/64 of the interval's increments
     double       maximum_increment     = 0.; ///< of time, that increments grow to; 0 = the interval's increments
