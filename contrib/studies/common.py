@@ -23,6 +23,23 @@ SCHEMES = {
     "averaged, segment": {"Scheme": "averaged", "Integration": "segment"},
 }
 
+# The paper's own integrals, products of shape functions, by several rules, and with the status test on the multipliers themselves. Of the
+# rules with more points than the degree the one with degree + 2 Gauss points is the default.
+_CONSISTENT = {"Scheme": "nodal", "Weights": "consistent"}
+CONSISTENT = {
+    "consistent, Gauss 2": {**_CONSISTENT, "Quadrature points": 2},
+    "consistent, Gauss 3": {**_CONSISTENT, "Quadrature points": 3},
+    "consistent, Gauss 4": {**_CONSISTENT, "Quadrature points": 4},
+    "consistent, Simpson": {**_CONSISTENT, "Quadrature rule": "Simpson"},  # 3 points for degree 1, 5 for degree 2
+    "consistent, Newton-Cotes 4": {**_CONSISTENT, "Quadrature rule": "Newton-Cotes", "Quadrature points": 4},
+    "consistent, test of the node": {**_CONSISTENT, "Status test": "raw"},
+}
+
+
+def keys_of(scheme):
+    return SCHEMES[scheme] if scheme in SCHEMES else CONSISTENT[scheme]
+
+
 # Nothing merged into Newton's iteration: the loops of the paper, and studies count their passes.
 THREE_LOOPS = {f"{loop} loop/Mode": "fixed point" for loop in ("Geometry", "Threshold", "Status")}
 

@@ -186,8 +186,8 @@ def line(degree, n, poisson, scheme):
     prm = case(degree, n, poisson, SHIFT)
     name = f"cattaneo_{degree}_{n}_{poisson}_{scheme}".replace(" ", "_").replace(",", "")
     notes = []
-    for note, sets in PATHS[scheme]:
-        run = common.run(prm, name, sets=sets, pair=dict(common.SCHEMES[scheme], Surface="smoothed"))
+    for note, sets in PATHS.get(scheme, PATHS["nodal"]):
+        run = common.run(prm, name, sets=sets, pair=dict(common.keys_of(scheme), Surface="smoothed"))
         if run.converged:
             break
         notes.append((note or "default") + " fails")

@@ -167,9 +167,9 @@ def load():
         return {tuple(key): value for key, value in json.load(file)}
 
 
-def solve(found, family, n, scheme):
+def solve(found, family, n, scheme, path="hertz.json"):
     degree, surface = family
-    keys = {**common.SCHEMES[scheme], "Surface": "smoothed" if surface == "smoothed" else "faceted"}
+    keys = {**common.keys_of(scheme), "Surface": "smoothed" if surface == "smoothed" else "faceted"}
     prm, sets = case(n, degree), {"Discretization/Degree": degree}
     again = (degree, surface, n, scheme) in found  # failed in an earlier run
     if not again:
@@ -181,7 +181,7 @@ def solve(found, family, n, scheme):
     if result:
         result["again"] = again
     found[degree, surface, n, scheme] = result
-    with open(os.path.join(common.SCRATCH, "hertz.json"), "w") as file:
+    with open(os.path.join(common.SCRATCH, path), "w") as file:
         json.dump(list(found.items()), file)
 
 

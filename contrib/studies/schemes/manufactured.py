@@ -327,7 +327,7 @@ def series(solution, degree, levels, scheme, surface, master):
         prm = case(solution, degree, n, MASTERS[master](n))
         name = f"manufactured_{solution.name}_{degree}_{n}_{master}_{surface}_{scheme}"
         name = name.replace(" ", "_").replace(",", "")
-        pair = dict(common.SCHEMES[scheme], Surface=surface)
+        pair = dict(common.keys_of(scheme), Surface=surface)
         run = common.run(prm, name, pair=pair)
         if not run.converged:
             run = common.run(prm, name, pair=dict(pair, **WEAK))

@@ -35,10 +35,10 @@ def errors(degree, pair, slave, scheme):
             "Contact pair 1/Master body": 2,
             "Contact pair 1/Master boundary ids": 4,
         })
-    run = common.run(PRM, "patch", sets, common.SCHEMES[scheme])
+    run = common.run(PRM, "patch", sets, common.keys_of(scheme))
     again = not run.converged
     if again:  # the interface bends, the facet normals at an edge make the geometry loop cycle
-        run = common.run(PRM, "patch", sets, {**common.SCHEMES[scheme], "Normal": "averaged"})
+        run = common.run(PRM, "patch", sets, {**common.keys_of(scheme), "Normal": "averaged"})
     if not run.converged:
         return None
     body = run.bodies()

@@ -125,7 +125,7 @@ def main():
             run = common.run(
                 prm,
                 f"sliding_{shaft}_{scheme}_{surface}_{normal}".replace(" ", "_").replace(",", ""),
-                pair=dict(common.SCHEMES[scheme], Surface=surface, Normal=normal),
+                pair=dict(common.keys_of(scheme), Surface=surface, Normal=normal),
             )
             value, torque = ripple(run)
             last = run.contact[-1]

@@ -42,29 +42,34 @@ def reason(log):
     return "statuses cycle" if "status loop cycles" in last else last.split(": ", 3)[-1][:80]
 
 
+HEADER = ["finished", "threshold", "status", "Newton", "changes", "longest cycle", "open/slip/stick"]
+
+
+def measure(case, pair, kind):
+    """A case of CASES with keys of the contact pair: the cells under HEADER."""
+    prm, sets = CASES[case]
+    name = f"unsticking_{case}_{kind}".replace(" ", "_").replace(",", "")
+    run = common.run(os.path.join(PRM, prm), name, dict(sets), pair)
+    table = run.contact if os.path.exists(os.path.join(run.folder, "contact.csv")) else []
+    total = {
+        key: sum(row[key] for row in table)
+        for key in ("threshold passes", "status passes", "Newton iterations", "status changes")
+    }
+    last = table[-1] if table else None
+    return [
+        "yes" if run.converged else f"stops after {len(table)} increments: {reason(run.log)}",
+        *(f"{total[key]:.0f}" if run.converged else "-" for key in total),
+        f"{max(row['longest status cycle'] for row in table):.0f}" if run.converged else "-",
+        "/".join(f"{last[key]:.0f}" for key in ("open nodes", "slip nodes", "stick nodes")) if last else "-",
+    ]
+
+
 def main():
     rows, passes = [], {}
-    for case, (prm, sets) in CASES.items():
+    for case in CASES:
         for kind, pair in KINDS.items():
-            name = f"unsticking_{case}_{kind}".replace(" ", "_").replace(",", "")
-            run = common.run(os.path.join(PRM, prm), name, dict(sets), pair)
-            table = run.contact if os.path.exists(os.path.join(run.folder, "contact.csv")) else []
-            total = {
-                key: sum(row[key] for row in table)
-                for key in ("threshold passes", "status passes", "Newton iterations", "status changes")
-            }
-            last = table[-1] if table else None
-            rows.append(
-                [
-                    case,
-                    kind,
-                    "yes" if run.converged else f"stops after {len(table)} increments: {reason(run.log)}",
-                    *(f"{total[key]:.0f}" if run.converged else "-" for key in total),
-                    f"{max(row['longest status cycle'] for row in table):.0f}" if run.converged else "-",
-                    "/".join(f"{last[key]:.0f}" for key in ("open nodes", "slip nodes", "stick nodes")) if last else "-",
-                ]
-            )
-            passes[(case, kind)] = total["status passes"] if run.converged else np.nan
+            rows.append([case, kind, *measure(case, pair, kind)])
+            passes[(case, kind)] = float(rows[-1][4]) if rows[-1][4] != "-" else np.nan
             print(rows[-1], flush=True)
     figure, axes = common.figure(7, 4)
     width = 0.8 / len(KINDS)
@@ -74,8 +79,7 @@ def main():
     axes.set_ylabel("status passes [-] (no bar: no coherent statuses)")
     axes.legend(fontsize="small")
     figure.savefig(os.path.join(HERE, "unsticking.png"), dpi=150)
-    header = ["case", "scheme", "finished", "threshold", "status", "Newton", "changes", "longest cycle", "open/slip/stick"]
-    text = common.table(os.path.join(HERE, "unsticking.md"), header, rows)
+    text = common.table(os.path.join(HERE, "unsticking.md"), ["case", "scheme", *HEADER], rows)
     with open(os.path.join(HERE, "unsticking.md"), "w") as file:
         file.write("## Unsticking: coherent statuses and what they cost\n\n")
         file.write(
