@@ -114,8 +114,8 @@ namespace
           else
             elsewhere = std::max(elsewhere, off);
         }
-        for (const double xi : {0.25, 0.5, 0.75})
-          for (const double eta : {0., 0.5, 1.})
+        for (const double xi : {0., 0.25, 0.5, 0.75, 1.})
+          for (const double eta : {0., 0.25, 0.5, 0.75, 1.})
             if (inside)
               distance = std::max(distance, std::abs(exact(around, surface.at(m, xi, eta).x).second));
       }
