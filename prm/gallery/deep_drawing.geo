@@ -1,5 +1,5 @@
 // A quarter of a round blank and of the tools that draw it to a cup, for prm/gallery/deep_drawing.prm (mm): blank of radius 40, 2 thick, on
-// the plane z = 0; die of radius 22.5 with an edge of 5; punch of radius 20 with an edge of 6, 0.1 above the blank; holder, a ring from 27.5 on.
+// the plane z = 0; die of radius 22.5 with an edge of 5; punch of radius 20 with an edge of 6, on the blank; holder, a ring from 27.5 on.
 // Tools are shells, as they are rigid. Axis z, planes of symmetry x = 0 and y = 0.
 // gmsh -setnumber n 7: cells of the blank around an eighth; r 36: along the radius from 14 on; l 2: through the thickness; o 1: order
 //

@@ -13,10 +13,10 @@ import os
 import re
 import subprocess
 
-from calculix import common, listed, nodus
+from plain_case import common, listed, nodus
 
 CASE = os.path.join(common.ROOT, "prm", "gallery", "deep_drawing.prm")
-THICKNESS, RADIUS, GAP, TRAVEL = 2.0, 40.0, 0.1, 25.0
+THICKNESS, RADIUS, TRAVEL = 2.0, 40.0, 25.0
 HOLDER, FRICTION = 20000.0, {"SPUNCH": 0.25, "SHOLDER": 0.125, "SDIE": 0.125}
 FACETS = 24
 YOUNG, POISSON = "Young's modulus", "Poisson's ratio"
@@ -84,10 +84,9 @@ def deck(radial, layers, stiffness):
     material = nodus.Case.read(CASE, program=common.program())["Body 1"]["Material"]
     d = Deck()
     cells, lower, upper, axis = d.blank(radial, layers)
-    level = THICKNESS + GAP
     tools = {
         "DIE": d.tool(*(profile(44, (27.5, -5), 5, -32, -1, depth) for depth in (0, 3))),
-        "PUNCH": d.tool(*(profile(0, (14, level + 6), 6, level + 36, 1, depth) for depth in (0, 3))),
+        "PUNCH": d.tool(*(profile(0, (14, THICKNESS + 6), 6, THICKNESS + 36, 1, depth) for depth in (0, 3))),
         "HOLDER": d.tool(*(line((27.5, z), (44, z), 6) for z in (THICKNESS, THICKNESS + 3))),
     }
     d.write("*NODE, NSET=ALL", *(f"{i}, {x:.9g}, {y:.9g}, 0." for i, (x, y) in enumerate(d.nodes, 1)))

@@ -1,0 +1,185 @@
+"""A case of nodus in GetFEM on the same mesh: contact of large sliding by ray tracing with multipliers on the slave side (Poulios & Renard 2015).
+
+run() puts what plain_case takes into a folder and starts this file as a program of its own there, so that its CPU and memory can be measured.
+Needs Debian's python3-getfem.
+"""
+
+import json
+import os
+import resource
+import subprocess
+import sys
+
+import numpy as np
+
+# Corners of an element of CalculiX in the order of the lattice, x fastest.
+LATTICE = [0, 1, 3, 2, 4, 5, 7, 6]
+# Of displacements, in Young's moduli over the length of an element; residuals are relative to what it gives.
+PENALTY, TOLERANCE = 1e4, 3e-11
+HALVINGS, ITERATIONS = 10, 30
+
+
+def run(case, augmentation, release, folder, time_limit=3600):
+    """augmentation: in pressure; release: how far the other surface is looked for [length]. Returns what calculix.run() returns."""
+    from plain_case import Unsupported
+
+    if case.degree != 1:
+        raise Unsupported("elements of degree 2")
+    os.makedirs(folder, exist_ok=True)
+    corners = case.elements - 1
+    content = {
+        "points": case.points.tolist(),
+        "bodies": {str(b): {"elements": corners[case.body == b].tolist(), "law": law} for b, law in case.laws().items()},
+        "pairs": [[_nodes(case, slave), _nodes(case, master), friction] for slave, master, friction in case.pairs().values()],
+        "conditions": {str(number): [_nodes(case, faces), [[c, history.tolist()] for c, history in components]]
+                       for number, (faces, components) in case.conditions().items()},
+        "times": case.times().tolist(), "augmentation": augmentation, "release": release,
+    }  # fmt: skip
+    with open(os.path.join(folder, "case.json"), "w", encoding="utf-8") as file:
+        json.dump(content, file)
+    limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (time_limit, time_limit + 5))  # noqa: E731
+    with open(os.path.join(folder, "log"), "w", encoding="utf-8") as log:
+        child = subprocess.Popen([sys.executable, os.path.abspath(__file__)], cwd=folder, stdout=log, stderr=subprocess.STDOUT, preexec_fn=limit)
+        usage = os.wait4(child.pid, 0)[2]
+    with open(os.path.join(folder, "result.json"), encoding="utf-8") as file:
+        result = json.load(file)
+    result["forces"] = {int(number): np.array(rows) for number, rows in result["forces"].items()}
+    return {**result, "cpu": usage.ru_utime + usage.ru_stime, "memory": usage.ru_maxrss / 1024}
+
+
+def _nodes(case, faces):
+    """Body and corners of each element face."""
+    from plain_case import FACES
+
+    return [[int(case.body[e - 1]), (case.elements[e - 1][list(FACES[s - 1])] - 1).tolist()] for e, s in faces]
+
+
+class Solid:
+    """Model of GetFEM with one displacement for each body; conditions by penalty."""
+
+    def __init__(self, content):
+        import getfem
+
+        self.getfem, self.content = getfem, content
+        self.model = getfem.Model("real")
+        self.points = np.array(content["points"])
+        self.meshes, self.spaces, self.rules, self.regions = {}, {}, {}, 0
+        for body, data in content["bodies"].items():
+            self._add_body(int(body), np.array(data["elements"]), *data["law"])
+        self.conditions = [self._condition(number, *data) for number, data in content["conditions"].items()]
+        for p, pair in enumerate(content["pairs"], 1):
+            self._add_pair(p, *pair)
+
+    def _add_body(self, body, elements, linear, modulus, ratio):
+        getfem, model = self.getfem, self.model
+        mesh = getfem.Mesh("empty", 3)
+        mesh.add_convex(getfem.GeoTrans("GT_QK(3,1)"), self.points[elements[:, LATTICE]].transpose(2, 1, 0))
+        self.meshes[body] = mesh
+        self.spaces[body] = getfem.MeshFem(mesh, 3)
+        self.spaces[body].set_classical_fem(1)
+        self.rules[body] = getfem.MeshIm(mesh, 4)
+        model.add_fem_variable(f"u{body}", self.spaces[body])
+        model.add_fem_data(f"w{body}", self.spaces[body])  # at the last time
+        shear, bulk = modulus / (2 * (1 + ratio)), modulus / (3 * (1 - 2 * ratio))
+        if linear:
+            model.add_initialized_data(f"first{body}", bulk - 2 * shear / 3)
+            model.add_initialized_data(f"shear{body}", shear)
+            model.add_isotropic_linearized_elasticity_brick(self.rules[body], f"u{body}", f"first{body}", f"shear{body}")
+        else:
+            model.add_initialized_data(f"law{body}", [shear / 2, bulk / 2])
+            model.add_finite_strain_elasticity_brick(self.rules[body], "Compressible Neo Hookean", f"u{body}", f"law{body}")
+        size = np.cbrt(abs(np.linalg.det(self.points[elements[0, [1, 3, 4]]] - self.points[elements[0, 0]])))
+        model.add_initialized_data(f"penalty{body}", PENALTY * modulus / size)
+
+    def _region(self, faces):
+        """body -> region of its faces."""
+        found = {}
+        for body in sorted({body for body, _ in faces}):
+            mesh = self.meshes[body]
+            columns = [mesh.faces_from_pid(mesh.pid_from_coords(self.points[nodes].T)) for b, nodes in faces if b == body]
+            self.regions += 1
+            mesh.set_region(self.regions, np.hstack(columns))
+            found[body] = self.regions
+        return found
+
+    def _condition(self, number, faces, components):
+        """Its displacements are data. Returns its number, regions by body, [(component, history)]."""
+        regions = self._region(faces)
+        for component, _ in components:
+            self.model.add_initialized_data(f"d{number}_{component}", 0.0)
+            for body, region in regions.items():
+                self.model.add_linear_term(self.rules[body], f"penalty{body}*(u{body}({component + 1})-d{number}_{component})"
+                                           f"*Test_u{body}({component + 1})", region)  # fmt: skip
+        return number, regions, components
+
+    def _add_pair(self, p, slave, master, friction):
+        model = self.model
+        ((slave_body, slave_region),) = self._region(slave).items()
+        ((master_body, master_region),) = self._region(master).items()
+        for name, value in (("augmentation", self.content["augmentation"]), ("friction", friction), ("alpha", 1.0)):
+            model.add_initialized_data(f"{name}{p}", value)
+        model.add_filtered_fem_variable(f"lambda{p}", self.spaces[slave_body], slave_region)
+        brick = model.add_integral_large_sliding_contact_brick_raytracing(f"augmentation{p}", self.content["release"], f"friction{p}", f"alpha{p}", 0)
+        model.add_slave_contact_boundary_to_large_sliding_contact_brick(brick, self.rules[slave_body], slave_region, f"u{slave_body}", f"lambda{p}",
+                                                                        f"w{slave_body}")  # fmt: skip
+        model.add_master_contact_boundary_to_large_sliding_contact_brick(brick, self.rules[master_body], master_region, f"u{master_body}",
+                                                                         f"w{master_body}")  # fmt: skip
+
+    def at(self, t):
+        for number, _, components in self.conditions:
+            for component, history in components:
+                self.model.set_variable(f"d{number}_{component}", float(np.interp(t, self.content["times"], history)))
+
+    def forces(self):
+        """condition -> what it does to the bodies."""
+        found = {}
+        for number, regions, components in self.conditions:
+            found[number] = [0.0, 0.0, 0.0]
+            for component, _ in components:
+                for body, region in regions.items():
+                    found[number][component] += float(self.getfem.asm_generic(
+                        self.rules[body], 0, f"penalty{body}*(d{number}_{component}-u{body}({component + 1}))", region, self.model))  # fmt: skip
+        return found
+
+    def solve(self, t):
+        """Newton iterations, and whether they converged."""
+        self.at(t)
+        return self.model.solve("max_res", TOLERANCE, "max_iter", ITERATIONS, "lsolver", "mumps", "lsearch", "simplest",
+                                "alpha max ratio", 1.5, "alpha min", 0.05, "alpha mult", 0.6, "noisy")  # fmt: skip
+
+
+def main():
+    with open("case.json", encoding="utf-8") as file:
+        content = json.load(file)
+    solid = Solid(content)
+    state = solid.model.from_variables()
+    result = {"finished": False, "time": 0.0, "increments": 0, "iterations": 0, "cut-backs": 0, "forces": {number: [] for number, *_ in solid.conditions}}
+    targets, halved = list(content["times"][:0:-1]), 0
+    while targets:
+        t = targets[-1]
+        iterations, converged = solid.solve(t)
+        result["iterations"] += int(iterations)
+        if converged:
+            targets.pop()
+            halved = max(0, halved - 1)
+            state = solid.model.from_variables()
+            for body in solid.meshes:
+                solid.model.set_variable(f"w{body}", solid.model.variable(f"u{body}"))
+            result.update(time=t, increments=result["increments"] + 1)
+            for number, force in solid.forces().items():
+                result["forces"][number].append([t, *force])
+        else:
+            solid.model.to_variables(state)
+            halved += 1
+            result["cut-backs"] += 1
+            if halved > HALVINGS:
+                break
+            targets.append((result["time"] + t) / 2)
+        result["finished"] = not targets
+        with open("result.json", "w", encoding="utf-8") as file:
+            json.dump(result, file)
+        print(f"t = {result['time']:g}, {result['iterations']} iterations, {result['cut-backs']} cut-backs", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,149 @@
+"""A case of nodus as other programs can take it: mesh, surfaces, laws, displacements and pairs, and no more.
+
+Bodies are deformable, linear elastic or of Mooney-Rivlin's law with ratio 0; conditions are displacements that depend on the time alone; surfaces
+are those that nodus finds (`--validate --surfaces`). What else a case has is refused.
+"""
+
+import os
+import re
+import sys
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+import common  # noqa: E402
+from common import nodus  # noqa: E402
+
+# One thread for each program, that of nodus among them.
+os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "CCX_NPROC_STIFFNESS", "CCX_NPROC_RESULTS",
+                                 "CCX_NPROC_EQUATION_SOLVER"), "1"))  # fmt: skip
+
+# Nodes of an element as positions in the lattice of nodes, in the order of CalculiX; the first eight are the corners.
+_CORNERS = "000 100 110 010 001 101 111 011".split()
+EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+# Corners of the faces S1 to S6.
+FACES = [(0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)]
+
+
+class Unsupported(Exception):
+    """What a case has and other programs are not given."""
+
+
+def listed(value, separator):
+    """The entries, as texts, of a key that is a list, or a text that says one."""
+    return [str(entry) for entry in (value if isinstance(value, (list, tuple)) else str(value).split(separator))]
+
+
+def _element_nodes(cells):
+    """Rows of point numbers in the order of CalculiX, of cells (n, nodes per direction, ...)."""
+    degree = cells.shape[1] - 1
+    places = [np.array([int(c) for c in corner]) * degree for corner in _CORNERS]
+    if degree == 2:
+        places += [(places[a] + places[b]) // 2 for a, b in EDGES]
+    return np.stack([cells[:, k, j, i] for i, j, k in places], axis=1)
+
+
+class PlainCase:
+    """points (n, 3) at the start; elements (n, nodes), numbers from 1 on, in the order of CalculiX; body of each element; n_unknowns."""
+
+    def __init__(self, path, sets, folder):
+        self.case = nodus.Case.read(path, program=common.program())
+        for key, value in sets.items():
+            self.case[key] = self.case.reference[key].value(value)
+        self._mesh(path, sets, folder)
+        self._surfaces(path, sets, folder)
+
+    def numbered(self, name):
+        """Sections such as Body 1, Body 2 by their numbers."""
+        return {int(key.split()[-1]): self.case[key] for key in self.case if re.fullmatch(name + r" \d+", key)}
+
+    def _mesh(self, path, sets, folder):
+        """Of the fields at the start of a run that ends there."""
+        start = {**sets, "Output/Results folder": os.path.join(folder, "mesh"), "Load stepping/Interval ends": 1e-9,
+                 "Load stepping/Increments": 1, "Output/Checkpoint interval": 0}  # fmt: skip
+        mesh = common.program().run(path, sets=start, check=False).bodies(0.0)
+        nodes = _element_nodes(mesh.cells)
+        used, rows = np.unique(nodes, return_inverse=True)
+        self.degree = mesh.cells.shape[1] - 1
+        self.elements = rows.reshape(nodes.shape) + 1
+        self.body = mesh.fields["body"][nodes[:, 0]].round().astype(int)
+        self.points = mesh.reference[used]
+        self.body_of_point = mesh.fields["body"][used].round().astype(int)
+        self.n_unknowns = 3 * len(used)
+
+    def _surfaces(self, path, sets, folder):
+        """Element faces of the roles that faces have: "boundary condition 1 (...), ..." and the like."""
+        file = os.path.join(folder, "surfaces.vtu")
+        common.program().validate(path, sets=sets, surfaces=file)
+        outside = nodus.read_mesh(file)
+        number = {self._key(x, b): n for n, (x, b) in enumerate(zip(self.points, self.body_of_point), 1)}
+        body = outside.cell_fields["body"].round().astype(int)
+        ends = outside.cells[:, [0, 0, -1, -1], [0, -1, -1, 0]]
+        corners = [frozenset(number[self._key(x, b)] for x in outside.points[face]) for face, b in zip(ends, body)]
+        sides = {frozenset(element[list(face)]): (e, s) for e, element in enumerate(self.elements, 1)
+                 for s, face in enumerate(FACES, 1)}  # fmt: skip
+        self._faces = {}
+        for role, chosen in outside.cell_fields.items():
+            if role not in ("body", "boundary_id"):
+                self._faces[role] = [sides[corners[f]] for f in np.flatnonzero(chosen > 0.5)]
+
+    @staticmethod
+    def _key(x, body):
+        return (*np.float32(x), int(body))
+
+    def nodes_of(self, faces):
+        """Numbers, from 1 on, of the nodes of element faces (element, side), both from 1 on."""
+        nodes = set()
+        for e, s in faces:
+            element, corners = self.elements[e - 1], FACES[s - 1]
+            nodes.update(element[list(corners)])
+            if len(element) > 8:
+                nodes.update(element[8 + i] for i, edge in enumerate(EDGES) if set(edge) <= set(corners))
+        return sorted(nodes)
+
+    def _role(self, begin):
+        found = [faces for role, faces in self._faces.items() if re.match(begin, role)]
+        if len(found) != 1:
+            raise Unsupported(f"roles {sorted(self._faces)} have not one that begins with '{begin}'")
+        return found[0]
+
+    def laws(self):
+        """body -> (whether it is linear elastic; if not it is neo-Hookean, shape and volume apart), Young's modulus, Poisson's ratio."""
+        found = {}
+        for number, body in self.numbered("Body").items():
+            material = body["Material"]
+            law = material["Law"]
+            if law != "linear elastic" and (law != "Mooney-Rivlin" or material.get("Mooney-Rivlin ratio", 0) != 0):
+                raise Unsupported(f"law {law} of body {number}")
+            found[number] = law == "linear elastic", material["Young's modulus"], material.get("Poisson's ratio", 0.3)
+        return found
+
+    def pairs(self):
+        """number -> slave faces, master faces, friction coefficient."""
+        return {number: (*(self._role(rf"contact pair {number}\b.*{side}") for side in ("slave", "master")),
+                         pair.get("Friction coefficient", 0)) for number, pair in self.numbered("Contact pair").items()}  # fmt: skip
+
+    def intervals(self):
+        """(begin, end, increments) of each."""
+        load = self.case["Load stepping"]
+        ends, counts = np.atleast_1d(load["Interval ends"]), np.atleast_1d(load["Increments"]).astype(int)
+        return list(zip(np.concatenate([[0.0], ends[:-1]]), ends, counts))
+
+    def times(self):
+        """Ends of all increments, from 0 on."""
+        return np.unique(np.concatenate([np.linspace(a, b, n + 1) for a, b, n in self.intervals()]))
+
+    def conditions(self):
+        """number -> faces, [(component 0, 1 or 2, displacements at times())]."""
+        found = {}
+        for number, condition in self.numbered("Boundary condition").items():
+            if condition.get("Type", "displacement") != "displacement":
+                raise Unsupported(f"boundary condition {number} is no displacement")
+            values = listed(condition["Value"], ";")
+            texts = [values[i if len(values) > 1 else 0] for i in range(len(listed(condition["Components"], ",")))]
+            found[number] = self._role(rf"boundary condition {number}\b"), [
+                ("xyz".index(component.strip()), np.array([float(nodus.evaluate(text, {"t": t})) for t in self.times()]))
+                for component, text in zip(listed(condition["Components"], ","), texts)
+            ]
+        return found
