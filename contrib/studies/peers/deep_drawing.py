@@ -3,7 +3,7 @@
 
     deep_drawing.py [--radial N] [--layers L] [--stiffness K]    (MPa/mm, of the contact)
 
-Writes prm/gallery/deep_drawing.csv. The tools are meshed and prescribed, the edges of die and punch in 24 facets; the law is read from the case.
+Writes prm/gallery/deep_drawing.csv. The tools are meshed and prescribed, the edges of die and punch in 96 facets; the law is read from the case.
 Needs ccx (Debian: calculix-ccx); CCX names the program.
 """
 
@@ -18,7 +18,7 @@ from plain_case import common, listed, nodus
 CASE = os.path.join(common.ROOT, "prm", "gallery", "deep_drawing.prm")
 THICKNESS, RADIUS, TRAVEL = 2.0, 40.0, 25.0
 HOLDER, FRICTION = 20000.0, {"SPUNCH": 0.25, "SHOLDER": 0.125, "SDIE": 0.125}
-FACETS = 24
+FACETS = 96
 YOUNG, POISSON = "Young's modulus", "Poisson's ratio"
 
 
