@@ -15,7 +15,7 @@ namespace Nodus
 
     constexpr unsigned int most_iterations = 30;
     /// Change of barycentric coordinates at which an iteration ends.
-    constexpr double converged = 1e-14;
+    constexpr double converged = 1e-10;
     /// A closest point this little outside of its triangle is in it: the patch beyond has it as well.
     constexpr double inside = 1e-10;
     /// A point that is this little beside the rim, in sizes of triangles, is not beyond it.

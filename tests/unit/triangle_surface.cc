@@ -66,15 +66,18 @@ namespace
     show("  of curvatures", bent, 3000. * bound);
   }
 
-  /// Radius 1, length 3, 36 sectors; where the normal is that of the side the height is that over a cylinder.
+  /// Radius 1, length 3, 36 sectors; where the normal is that of the side the height is that over a cylinder. Many
+  /// points: in triangles that are seventeen times as long as wide, iterations that went on below round-off missed 3 of
+  /// 100 000.
   void test_cylinder()
   {
     const TriangleSurface surface(Stl::cylinder(1., 3., 36), true, "cylinder");
     double                side = 0., cap = 0., edge = 0.;
-    for (unsigned int i = 0; i < 2000; ++i)
+    for (unsigned int i = 0; i < 300000; ++i)
     {
-      const Point p(
-          1.5 * random_number(generator), 1.5 * random_number(generator), 1.5 + 2. * random_number(generator));
+      Point p(random_vector());
+      for (unsigned int c = 0; c < dim; ++c)
+        p[c] = c < 2 ? 1.5 * p[c] : 1.5 + 2. * p[c];
       const double rho = std::hypot(p[0], p[1]), below = std::max(-p[2], p[2] - 3.), beside = rho - 1.;
       const double height = surface.height(p);
       if (below > 0. && beside > 0.01)
