@@ -286,8 +286,9 @@ namespace Nodus
       const double     dx = alpha == 0 ? step : 0., dy = alpha == 1 ? step : 0.;
       const auto       normal = [&](const double sign)
       {
-        return pairs_[p].normal == Normal::averaged ? surface.averaged_normal(f, xi + sign * dx, eta + sign * dy)
-                                                    : surface.facet_normal(f, xi + sign * dx, eta + sign * dy, rim);
+        const double x = master.xi + sign * dx, y = master.eta + sign * dy;
+        return pairs_[p].normal == Normal::averaged ? surface.averaged_normal(master.face, x, y)
+                                                    : surface.facet_normal(master.face, x, y, rim);
       };
       const Vector3 slope = (normal(-1.) - normal(1.)) / (2. * step);
       for (const auto &[source, value] : motion[alpha])
