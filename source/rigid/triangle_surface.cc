@@ -14,7 +14,8 @@ namespace Nodus
     constexpr unsigned int none = TriangleMesh::none;
 
     constexpr unsigned int most_iterations = 30;
-    /// Change of barycentric coordinates at which an iteration ends.
+    /// Change of barycentric coordinates at which an iteration ends: Newton's method leaves its square, and round-off
+    /// in long triangles is more than that.
     constexpr double converged = 1e-10;
     /// A closest point this little outside of its triangle is in it: the patch beyond has it as well.
     constexpr double inside = 1e-10;

@@ -7,8 +7,6 @@ import subprocess
 
 import numpy as np
 
-from plain_case import PlainCase
-
 ELEMENTS = {1: "C3D8", 2: "C3D20R"}
 
 
