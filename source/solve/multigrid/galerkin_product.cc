@@ -168,10 +168,10 @@ namespace Nodus
     private:
       Row times_P(const ConstrainedMatrix::LocalRow &nodes)
       {
-        for (const auto &[i, block] : nodes)
-          P_.for_row(i,
+        for (const auto &entry : nodes)
+          P_.for_row(entry.first,
                      [&](const unsigned int a, const float *const P_block)
-                     { add_product(block.data(), false, load(P_block), product_[a]); });
+                     { add_product(entry.second.data(), false, load(P_block), product_[a]); });
         Row row;
         for (unsigned int l = 0; l < product_.columns().size(); ++l)
           row.emplace_back(product_.columns()[l], product_.panel(l));
