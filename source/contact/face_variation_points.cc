@@ -114,7 +114,7 @@ namespace Nodus
     {
       // f = S^2/(A T), counted = T/S, with the sums S and T of the areas times parts, and squares of parts
       const auto [fraction, counted] = face_.coverage;
-      const double area = polygon.part * twice_area * rule.weight(place.q) / counted, relative = polygon.part / counted;
+      const double area = place.part * twice_area * rule.weight(place.q) / counted, relative = place.part / counted;
       const Row    squared = relative * (log_area + frame.log_part);
       for (unsigned int l = 0; l < local_.size(); ++l)
       {

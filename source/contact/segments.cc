@@ -13,6 +13,8 @@ namespace Nodus
   {
     /// Overlaps below this fraction of a slave cell are round-off.
     constexpr double smallest_overlap = 1e-10;
+    /// Of a slave cell: overlaps that exceed it by more lie one behind the other.
+    constexpr double smallest_layer = 1e-8;
     /// Of the reach: a face this much nearer than another one is before it.
     constexpr double round_off = 1e-6;
 
@@ -204,6 +206,10 @@ namespace Nodus
               (self_->may_touch(f_, m) && !self_->is_beyond(m, plane.origin, plane.normal, self_->most_visible(f_))))
             for (unsigned int cell = 0; cell < n_cells(degree_); ++cell)
               add_overlap(window, plane, middle, cell_area, m, cell);
+        double area = 0.;
+        for (const Overlap &overlap : overlaps())
+          area += overlap.polygon.area();
+        layered_ = area > (1. + smallest_layer) * cell_area;
       }
 
       /// Unless it is next to nothing, or the cells do not face each other.
@@ -246,19 +252,20 @@ namespace Nodus
                               Point2(plane.axis[0] * rises, plane.axis[1] * rises)});
       }
 
-      /// Whether the surface that touches itself has another face before this one at @p p.
-      bool is_hidden(const Overlap &overlap, const Point2 &p) const
+      /// What the faces before this one leave of the part that it counts with at @p p (eq. J11).
+      double seen(const Overlap &overlap, const Point2 &p) const
       {
         const double height = std::abs(overlap.height(p)) - round_off * reach_;
-        return std::any_of(overlaps().begin(),
-                           overlaps().end(),
-                           [&](const Overlap &other)
-                           {
-                             const double before = other.height(p);
-                             return other.m != overlap.m && std::abs(before) < height &&
-                                    before > -self_->visible(f_, 0.5, 0.5, other.m, 0.5, 0.5) &&
-                                    other.polygon.contains(p);
-                           });
+        double       hidden = 0.;
+        for (const Overlap &other : overlaps())
+          if (other.part > hidden && other.m != overlap.m)
+          {
+            const double before = other.height(p);
+            const double depth  = self_ == nullptr ? reach_ : self_->visible(f_, 0.5, 0.5, other.m, 0.5, 0.5);
+            if (std::abs(before) < height && before > -depth && other.polygon.contains(p))
+              hidden = other.part;
+          }
+        return 1. - hidden;
       }
 
       /// False where the slave face is folded over.
@@ -267,14 +274,8 @@ namespace Nodus
       {
         const Polygon &polygon = overlap.polygon;
         const auto    &rule    = segment_rule(degree_);
-        trace_.polygons.push_back({cell,
-                                   overlap.m,
-                                   overlap.cell,
-                                   overlap.part,
-                                   overlap.near_rate,
-                                   polygon.n,
-                                   polygon.corner,
-                                   polygon.origin});
+        trace_.polygons.push_back(
+            {cell, overlap.m, overlap.cell, overlap.near_rate, polygon.n, polygon.corner, polygon.origin});
         const FlatFace master_face = smooth_face(master_, overlap.m, plane);
         double         xi = (cell % degree_ + 0.5) / degree_, eta = (cell / degree_ + 0.5) / degree_;
         const double   middle_xi = (overlap.cell % degree_ + 0.5) / degree_,
@@ -301,16 +302,19 @@ namespace Nodus
             if (gap.norm() > reach_)
               continue;
             if (self_ != nullptr &&
-                (-(gap * plane.normal) > self_->visible(f_, xi, eta, overlap.m, master.xi, master.eta) ||
-                 is_hidden(overlap, p)))
+                -(gap * plane.normal) > self_->visible(f_, xi, eta, overlap.m, master.xi, master.eta))
               continue;
-            const double area = overlap.part * twice_area * rule.weight(q);
+            const double part = layered_ ? overlap.part * seen(overlap, p) : overlap.part;
+            if (part == 0.)
+              continue;
+            const double area = part * twice_area * rule.weight(q);
             points_.push_back({xi, eta, area / slave_facet.area(xi, eta), master});
-            trace_.places.push_back({static_cast<unsigned int>(trace_.polygons.size() - 1),
+            trace_.places.push_back({part,
+                                     static_cast<unsigned int>(trace_.polygons.size() - 1),
                                      static_cast<unsigned char>(t),
                                      static_cast<unsigned char>(q)});
             covered_ += area;
-            twice_counted_ += overlap.part * area;
+            twice_counted_ += part * area;
           }
         }
         return true;
@@ -323,6 +327,7 @@ namespace Nodus
       const unsigned int        f_, degree_;
       std::vector<MortarPoint> &points_;
       SegmentTrace             &trace_;
+      bool                      layered_   = false; ///< several master cells are over a place of the present cell
       double                    face_area_ = 0., covered_ = 0., twice_counted_ = 0.; ///< with the part, with its square
     };
   } // namespace

@@ -58,7 +58,6 @@ namespace Nodus
     struct Polygon
     {
       unsigned int                     cell, master, master_cell; ///< master: face
-      double                           part;                      ///< that the points on it count with (eq. J8)
       double                           near_rate; ///< of the logarithm of the part, by cell_height() (eq. O3)
       unsigned int                     n;
       std::array<dealii::Point<2>, 16> x; ///< corners in the plane
@@ -67,6 +66,7 @@ namespace Nodus
     /// Of each integration point: polygon, last corner of the triangle that fans out from corner 0, point of the rule.
     struct Place
     {
+      double        part; ///< that it counts with (eq. J8)
       unsigned int  polygon;
       unsigned char last, q;
     };
@@ -99,9 +99,9 @@ namespace Nodus
   /// Integration points of slave face @p f of a pair on its overlaps with the master faces, seen along the slave
   /// normal: the faces (of degree 2: their four quarters) are projected on the plane of the slave one, clipped as
   /// convex polygons and triangulated (Puso & Laursen 2004). Polynomials of the product of slave and master shape
-  /// functions are integrated exactly where both faces are parallelograms. Where the surface touches itself, the face
-  /// has points on the nearest of several faces, and only where it is the slave of that. @p points and @p trace are
-  /// overwritten.
+  /// functions are integrated exactly where both faces are parallelograms. Of several master faces over a place the
+  /// nearest one counts and hides the others (eq. J11). Where the surface touches itself, the face has points only
+  /// where it is the slave. @p points and @p trace are overwritten.
   Coverage segment_points(const ContactGeometry    &geometry,
                           unsigned int              pair,
                           unsigned int              f,
