@@ -10,17 +10,20 @@ set(NODUS_MULTIGRID_TARGETS)
 # that cmake --install makes is in install.cmake.
 set(CMAKE_BUILD_RPATH ${CMAKE_BINARY_DIR})
 
-# add_multigrid(<name> <header> <libraries that its source needs>...)
+# add_multigrid(<name> <header> <libraries that its source needs>... [OPTIONAL <those that not every version has>...])
 function(add_multigrid name header)
+  cmake_parse_arguments(PARSE_ARGV 2 _of "" "" OPTIONAL)
   string(TOLOWER ${name} _lower)
   set(_hints HINTS ${TRILINOS_DIR} $ENV{TRILINOS_DIR})
   find_path(NODUS_${name}_HEADERS ${header} ${_hints} PATH_SUFFIXES include/trilinos trilinos include)
   mark_as_advanced(NODUS_${name}_HEADERS)
   set(_libraries)
-  foreach(_library ${ARGN})
+  foreach(_library ${_of_UNPARSED_ARGUMENTS} ${_of_OPTIONAL})
     find_library(NODUS_${_library}_LIBRARY NAMES trilinos_${_library} ${_library} ${_hints} PATH_SUFFIXES lib)
     mark_as_advanced(NODUS_${_library}_LIBRARY)
-    list(APPEND _libraries ${NODUS_${_library}_LIBRARY})
+    if(NODUS_${_library}_LIBRARY OR NOT _library IN_LIST _of_OPTIONAL)
+      list(APPEND _libraries ${NODUS_${_library}_LIBRARY})
+    endif()
   endforeach()
   if(NOT "${NODUS_${name}_HEADERS};${_libraries}" MATCHES "NOTFOUND")
     # headers of one package include those of others, which may be missing
@@ -51,5 +54,6 @@ endfunction()
 if(NODUS_TRILINOS)
   add_multigrid(ML ml_MultiLevelPreconditioner.h ml epetra teuchosparameterlist teuchoscore)
   add_multigrid(MueLu MueLu_CreateTpetraPreconditioner.hpp
-    muelu muelu-interface xpetra xpetra-sup tpetra teuchoscomm teuchosparameterlist teuchoscore kokkoscore)
+    muelu xpetra tpetra teuchoscomm teuchosparameterlist teuchoscore kokkoscore
+    OPTIONAL muelu-interface xpetra-sup) # up to Trilinos 15
 endif()
