@@ -85,7 +85,10 @@ namespace Nodus
                         newton.contact_tolerance,
                         "Gap and slip relative to the displacement of the step, friction law absolute [-].",
                         at_most(largest_newton_tolerance));
-      prm.add_parameter("Line search", newton.line_search, "Shorten a correction that increases the residual [-].");
+      prm.add_parameter("Line search",
+                        newton.line_search,
+                        "Shorten every correction that increases the residual [-]; without, this is done where no "
+                        "status changes and the iterates get no better.");
       prm.add_parameter("Largest forcing term",
                         newton.largest_forcing_term,
                         "Relative accuracy of corrections by an iterative linear solver far from the solution; near it "

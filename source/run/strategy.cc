@@ -15,7 +15,7 @@
 // | geometry loop  | slow passes are mixed                        | IncrementLoops::geometry_converged  |
 // | threshold loop | slow passes are mixed                        | IncrementLoops::threshold_converged |
 // | statuses cycle | regularised law; frozen statuses             | Status::update, find_period         |
-// | Newton's step  | halved: inverted cells, line search          | Newton::take_step                   |
+// | Newton's step  | halved: inverted cells, cycles, line search  | Newton::take_step                   |
 // | Newton's step  | limited: through the other surface           | Equilibrium::limit_step             |
 // | linear solver  | the direct one                               | ChosenSolver                       |
 

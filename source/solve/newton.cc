@@ -89,19 +89,23 @@ namespace Nodus
       const unsigned int krylov_iterations = problem.solve(correction, forcing);
       report.krylov_iterations += krylov_iterations;
       ++report.iterations;
-      take_step(problem, correction, norms);
+      // with nothing left to choose, a step that leads back up belongs to a cycle at a kink of a law
+      take_step(problem, correction, norms, parameters_.line_search || (idle > 0 && norms.changes == 0));
       norms = problem.accept(report.iterations);
       log(report.iterations, norms, krylov_iterations);
     }
     return report;
   }
 
-  void Newton::take_step(NewtonProblem &problem, const BlockVector &correction, const NewtonProblem::Norms &norms) const
+  void Newton::take_step(NewtonProblem              &problem,
+                         const BlockVector          &correction,
+                         const NewtonProblem::Norms &norms,
+                         const bool                  line_search) const
   {
     // The first correction moves the prescribed displacements: its force residual says nothing about progress. Where a
     // status has just changed, forces balance still and the contact laws do not: the largest of the norms is what
     // counts.
-    const bool search = parameters_.line_search && norms.prescribed <= parameters_.contact_tolerance;
+    const bool search = line_search && norms.prescribed <= parameters_.contact_tolerance;
     double     step   = 1.;
     for (unsigned int halving = 0;; ++halving)
     {

@@ -61,15 +61,19 @@ namespace Nodus
     /// no guess.
     /// Corrections are as exact as the next iterate can use: forcing terms of Eisenstat & Walker (1996), choice 2.
     /// A step into states that do not exist (det F <= 0) is halved, a few times at most; with line search, so is one
-    /// that increases the largest norm (eq. N5) at the choices that the step was computed with. Every other failure
-    /// goes up at once. @throws SolverFailure with the last norms.
+    /// that increases the largest norm (eq. N5) at the choices that the step was computed with. Without, this begins
+    /// where no choice changes and the iterate is no better than one before. Every other failure goes up at once.
+    /// @throws SolverFailure with the last norms.
     Report solve(NewtonProblem &problem, const Log &log) const;
 
     bool converged(const NewtonProblem::Norms &norms) const;
 
   private:
     /// Moves to a trial that exists and, with line search, decreases the largest norm.
-    void take_step(NewtonProblem &problem, const BlockVector &correction, const NewtonProblem::Norms &norms) const;
+    void take_step(NewtonProblem              &problem,
+                   const BlockVector          &correction,
+                   const NewtonProblem::Norms &norms,
+                   bool                        line_search) const;
     /// Largest norm in units of its tolerance.
     double residual(const NewtonProblem::Norms &norms) const;
 

@@ -42,6 +42,7 @@ namespace
     p.output.write_vtu           = false;
     if (loops)
       use_loops(p);
+    p.threshold_loop.tolerance = 1e-8;
     return p;
   }
 } // namespace

@@ -1,7 +1,9 @@
 // Newton and the loop record alone, without physics: a 2 x 2 system x^2 + y^2 = 4, x y = 1 (solution
 // x = (sqrt 6 + sqrt 2)/2, y = 1/x) converges quadratically; failures throw; a step into inverted cells is halved, and
 // so is, with line search, one that does not decrease the largest residual; any other failure goes up after one trial,
-// and of a trial that is rejected nothing is left; progress is measured from the first correction on.
+// and of a trial that is rejected nothing is left; progress is measured from the first correction on. Newton's iterates
+// for arctan(x) = 0 go away from 0 by themselves from 1.4 on (1.5, -1.69, 2.32, -5.11, ...): the steps are halved once
+// they have, but not while choices change.
 
 #include "solve/newton.h"
 #include "run/fixed_point_loop.h"
@@ -56,7 +58,7 @@ namespace
       const double     r0 = 4 - x * x - y * y, r1 = 1 - x * y, det = 2 * x * x - 2 * y * y;
       dealii::IndexSet all(2);
       all.add_range(0, 2);
-      correction = BlockVector(std::vector<dealii::IndexSet>{all}, MPI_COMM_WORLD);
+      correction             = BlockVector(std::vector<dealii::IndexSet>{all}, MPI_COMM_WORLD);
       correction.block(0)(0) = (x * r0 - 2 * y * r1) / det;
       correction.block(0)(1) = (-y * r0 + 2 * x * r1) / det;
       from_x                 = x;
@@ -99,6 +101,43 @@ namespace
     }
     void move(double, const BlockVector &) override
     {
+    }
+  };
+
+  /// arctan(x) = 0.
+  struct Arctan : public NewtonProblem
+  {
+    double       x = 1.5, from = 0.;
+    unsigned int trials = 0, changes = 0; ///< changes: of every iterate
+    Norms        norms() const
+    {
+      Norms norms;
+      norms.force = std::abs(std::atan(x));
+      return norms;
+    }
+    Norms evaluate(bool) override
+    {
+      ++trials;
+      return norms();
+    }
+    Norms accept(unsigned int) override
+    {
+      Norms result   = norms();
+      result.changes = changes;
+      return result;
+    }
+    unsigned int solve(BlockVector &correction, double) override
+    {
+      dealii::IndexSet all(1);
+      all.add_range(0, 1);
+      correction             = BlockVector(std::vector<dealii::IndexSet>{all}, MPI_COMM_WORLD);
+      correction.block(0)(0) = -std::atan(x) * (1 + x * x);
+      from                   = x;
+      return 0;
+    }
+    void move(const double factor, const BlockVector &correction) override
+    {
+      x = from + factor * correction.block(0)(0);
     }
   };
 
@@ -170,6 +209,22 @@ int main(int argc, char **argv)
   report = Newton(parameters).solve(balanced, none);
   std::cout << "from balanced forces: iterations " << report.iterations << ", trials " << balanced.trials << std::endl;
   parameters.line_search = false;
+
+  for (const unsigned int changes : {0, 1})
+  {
+    Arctan away;
+    away.changes = changes;
+    try
+    {
+      report = Newton(parameters).solve(away, none);
+      std::cout << "away: iterations " << report.iterations << ", trials " << away.trials << ", |x| < 1e-12 "
+                << (std::abs(away.x) < 1e-12) << std::endl;
+    }
+    catch (const SolverFailure &failure)
+    {
+      std::cout << "away, with changes: " << std::string(failure.what()).substr(0, 24) << std::endl;
+    }
+  }
 
   for (const double factor : {0.05, 1.})
     try
