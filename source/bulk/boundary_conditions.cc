@@ -26,6 +26,9 @@ namespace Nodus
 
   namespace
   {
+    constexpr auto cure_of_rigid_body = "hold it by taking components out of its 'Rigid free'";
+    constexpr auto cure_of_face = "give one of the two other 'Components' or nodes, or take them out of its 'Free'";
+
     using Type         = BoundaryConditionParameters::Type;
     using CellIterator = DoFHandler<dim>::active_cell_iterator;
 
@@ -235,8 +238,7 @@ namespace Nodus
       {
         const unsigned int driven = is_driven(n) ? n : first.condition;
         error                     = label(is_driven(n) ? first.condition : n) + " holds nodes of " + label(driven) +
-                ", whose motion is in part free; hold it by taking components out of its '" +
-                (driven >= n_given_ ? "Rigid free'" : "Free'");
+                ", whose motion is in part free; " + (driven >= n_given_ ? cure_of_rigid_body : cure_of_face);
         return;
       }
       const auto values   = history(*functions_[n], X, e, stage.begin, stage.end);

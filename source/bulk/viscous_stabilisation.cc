@@ -7,12 +7,10 @@
 
 namespace Nodus
 {
-  ViscousStabilisation::ViscousStabilisation(const double                                  viscosity,
-                                             const Bodies                                 &bodies,
+  ViscousStabilisation::ViscousStabilisation(const Bodies                                 &bodies,
                                              const std::vector<std::unique_ptr<Material>> &materials,
                                              const dealii::DoFHandler<dim>                &dof_handler,
                                              const dealii::Mapping<dim>                   &mapping)
-      : viscosity_(viscosity)
   {
     const dealii::IndexSet &owned = dof_handler.locally_owned_dofs();
     std::vector<double>     stiffness; // of a unit of volume
@@ -45,7 +43,8 @@ namespace Nodus
       resistance_.push_back(sum(i));
   }
 
-  void ViscousStabilisation::set_increment(const double begin,
+  void ViscousStabilisation::set_increment(const double viscosity,
+                                           const double begin,
                                            const double end,
                                            const double interval_begin,
                                            const double interval_end)
@@ -54,7 +53,7 @@ namespace Nodus
       return;
     // the last increment ends at the end of the interval up to round-off
     const double rest = (interval_end - end) / (interval_end - interval_begin);
-    rate_             = rest < 1e-12 ? 0. : viscosity_ * rest * (interval_end - interval_begin) / (end - begin);
+    rate_             = rest < 1e-12 ? 0. : viscosity * rest * (interval_end - interval_begin) / (end - begin);
   }
 
   void ViscousStabilisation::add(const Vector                            &moved,

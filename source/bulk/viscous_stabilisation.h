@@ -25,15 +25,14 @@ namespace Nodus
   class ViscousStabilisation
   {
   public:
-    /// @p viscosity relative, >= 0. Collective.
-    ViscousStabilisation(double                                        viscosity,
-                         const Bodies                                 &bodies,
+    /// Collective.
+    ViscousStabilisation(const Bodies                                 &bodies,
                          const std::vector<std::unique_ptr<Material>> &materials,
                          const dealii::DoFHandler<dim>                &dof_handler,
                          const dealii::Mapping<dim>                   &mapping);
 
-    /// The increment from @p begin to @p end of an interval.
-    void set_increment(double begin, double end, double interval_begin, double interval_end);
+    /// The increment from @p begin to @p end of an interval. @p viscosity relative, >= 0.
+    void set_increment(double viscosity, double begin, double end, double interval_begin, double interval_end);
     bool acts() const
     {
       return rate_ > 0.;
@@ -72,7 +71,6 @@ namespace Nodus
              Vector                                  &force) const;
 
   private:
-    double              viscosity_;
     std::vector<double> resistance_; ///< E V/L^2 of the owned degrees of freedom [force/length]
     double              rate_ = 0., relaxation_ = 0.;
   };

@@ -118,7 +118,7 @@ namespace Nodus
   }
 
   /// Unless it is there.
-  void ContactSurfaces::add_node(const DoFIndex dof, const double *const X)
+  void ContactSurfaces::add_node(const DoFIndex dof, const double *const X, const unsigned int body)
   {
     if (!node_of_dof_.emplace(dof, nodes_.size()).second)
       return;
@@ -130,17 +130,18 @@ namespace Nodus
       node.X[c]    = X[c];
     }
     node.owner = directory_.owner(dof);
+    node.body  = body;
   }
 
   void ContactSurfaces::add_nodes(const FaceRecord &record)
   {
     for (unsigned int n = 0; n < (degree_ + 1) * (degree_ + 1); ++n)
-      add_node(record.dofs[n][0], record.X[n]);
+      add_node(record.dofs[n][0], record.X[n], record.body);
     for (const FaceRecord::Follower &follower : record.followers)
-      add_node(follower.dof, follower.X);
+      add_node(follower.dof, follower.X, record.body);
     if (pairs_[record.pair].self_contact)
       for (unsigned int n = 0; n < 4; ++n)
-        add_node(record.across[n], record.X_across[n]);
+        add_node(record.across[n], record.X_across[n], record.body);
   }
 
   void ContactSurfaces::link_followers(const std::vector<FaceRecord> &records)

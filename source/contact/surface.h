@@ -29,6 +29,7 @@ namespace Nodus
     std::array<DoFIndex, dim> dofs;
     Point                     X;         ///< reference position
     unsigned int              owner;     ///< rank that owns its degrees of freedom
+    unsigned int              body;      ///< its number, from 1
     double                    wall = 0.; ///< thickness of the one behind it at the start, see wall_thickness() [length]
 
     /// Of a hanging node: what it follows, indices into ContactSurfaces::nodes() and weights, and how far its reference
@@ -337,7 +338,7 @@ namespace Nodus
     void        make_layout(const dealii::IndexSet &owned_dofs);
     void        fetch(const std::vector<Vector3> &u);
     void        take_master_faces(const std::vector<FaceRecord> &records);
-    void        add_node(DoFIndex dof, const double *X);
+    void        add_node(DoFIndex dof, const double *X, unsigned int body);
     void        add_nodes(const FaceRecord &record);
     void        link_followers(const std::vector<FaceRecord> &records);
     SurfaceFace make_face(const FaceRecord &record) const;

@@ -40,14 +40,14 @@ namespace Nodus
     {
       bool          ghost;
       DoFIndex      dof;
-      unsigned int  pair;
+      unsigned int  pair, body;
       const double *X;
     };
     std::vector<Place> places;
     for (const FaceRecord &record : records)
     {
       const auto add = [&](const DoFIndex dof, const double *const X) {
-        places.push_back({directory_.owner(dof) != rank_, dof, record.pair, X});
+        places.push_back({directory_.owner(dof) != rank_, dof, record.pair, record.body, X});
       };
       for (unsigned int n = 0; n < (degree_ + 1) * (degree_ + 1); ++n)
         if (!record.hangs(n))
@@ -68,7 +68,7 @@ namespace Nodus
       if (new_node)
       {
         sites_.first_of_node.push_back(sites_.nodes.size());
-        add_node(place.dof, place.X);
+        add_node(place.dof, place.X, place.body);
       }
       sites_.nodes.push_back({static_cast<unsigned int>(nodes_.size() - 1), place.pair});
       sites_.n_owned_nodes += !place.ghost;
@@ -113,7 +113,7 @@ namespace Nodus
       std::array<unsigned int, RigidCarrier::n_nodes> nodes;
       for (unsigned int i = 0; i < nodes.size(); ++i)
       {
-        add_node(carrier.dof(i), &carrier.X(i)[0]);
+        add_node(carrier.dof(i), &carrier.X(i)[0], pairs_[p].master.first_body());
         nodes[i] = node(carrier.dof(i));
       }
       carrier.set_nodes(nodes);

@@ -86,8 +86,10 @@ namespace Nodus
 
     void sum_over_ranks(ContactResultants &result, const MPI_Comm communicator)
     {
-      Vector3 *const vectors[] = {
+      std::vector<Vector3 *> vectors = {
           &result.slave_force, &result.slave_moment, &result.master_force, &result.master_moment, &result.friction};
+      for (auto &master : result.masters)
+        vectors.insert(vectors.end(), {&master.force, &master.moment});
       unsigned int *const counts[] = {&result.open,
                                       &result.slip,
                                       &result.stick,
@@ -305,7 +307,12 @@ namespace Nodus
   {
     std::vector<ContactResultants> all(pairs.size());
     for (unsigned int p = 0; p < pairs.size(); ++p)
+    {
       all[p].name = pairs[p].name;
+      if (pairs[p].master.bodies.size() > 1 && !pairs[p].self_contact)
+        for (const unsigned int body : pairs[p].master.bodies)
+          all[p].masters.push_back({body, Vector3(), Vector3()});
+    }
     for (unsigned int i = 0; i < surfaces.n_sites(); ++i)
     {
       if (!surfaces.is_owned(i))
@@ -321,6 +328,12 @@ namespace Nodus
         const Vector3 moment = dealii::cross_product_3d(Vector3(state.x[e->node]), force);
         (slave ? result.slave_force : result.master_force) += force;
         (slave ? result.slave_moment : result.master_moment) += moment;
+        for (auto &master : result.masters)
+          if (!slave && master.body == surfaces.nodes()[e->node].body)
+          {
+            master.force += force;
+            master.moment += moment;
+          }
       }
       const RigidSurface *const rigid = surfaces.rigid_master(surfaces.pair(i));
       if (rigid != nullptr && rigid->carrier() == nullptr)

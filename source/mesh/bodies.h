@@ -90,6 +90,10 @@ namespace Nodus
     {
       return names_[index];
     }
+    const std::vector<std::string> &names() const
+    {
+      return names_;
+    }
     bool has_mesh(const unsigned int index) const
     {
       return has_mesh_[index];

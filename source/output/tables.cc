@@ -26,6 +26,9 @@ namespace Nodus
                                     "Krylov iterations,status changes,tension,penetration,over cone,against slip,"
                                     "longest status cycle,fallbacks,cut-backs";
 
+    constexpr auto master_header = "increment,time,pair,body,force x [force],force y [force],force z [force],"
+                                   "moment x [force length],moment y [force length],moment z [force length]\n";
+
     constexpr auto reaction_header = "increment,time,condition,force x [force],force y [force],force z [force]\n";
 
     constexpr auto rigid_body_header = "increment,time,body,translation x [length],translation y [length],"
@@ -78,12 +81,20 @@ namespace Nodus
         out << ',' << point.cauchy_stress.access_raw_entry(i);
       out << '\n';
     }
+
+    /// Rows of a table that there may be none of.
+    void add_optional(const std::string &header, const std::string &rows, std::string &table)
+    {
+      if (!rows.empty())
+        table += (table.empty() ? header : "") + rows;
+    }
   } // namespace
 
-  Tables::Tables(const std::string &folder, MPI_Comm communicator)
+  Tables::Tables(const std::string &folder, MPI_Comm communicator, const std::vector<std::string> &bodies)
       : folder_(folder)
       , communicator_(communicator)
-      , rows_{contact_header, reaction_header, energy_header, iteration_header, "", "", ""}
+      , bodies_(bodies)
+      , rows_{contact_header, reaction_header, energy_header, iteration_header, "", "", "", ""}
   {
     for (const char *name : remedy_names)
       rows_.contact += ',' + std::string(name);
@@ -122,6 +133,17 @@ namespace Nodus
     }
     rows_.contact += contact_rows.str();
 
+    auto master_rows = row();
+    for (const auto &pair : contact)
+      for (const auto &master : pair.masters)
+      {
+        master_rows << increment << ',' << t << ',' << quoted(pair.name) << ',' << quoted(bodies_[master.body - 1]);
+        print(master_rows, master.force);
+        print(master_rows, master.moment);
+        master_rows << '\n';
+      }
+    add_optional(master_header, master_rows.str(), rows_.masters);
+
     auto reaction_rows = row();
     for (const auto &reaction : reactions)
     {
@@ -139,9 +161,7 @@ namespace Nodus
         print(rigid_rows, v);
       rigid_rows << '\n';
     }
-    if (rows_.rigid_bodies.empty() && !rigid_bodies.empty())
-      rows_.rigid_bodies = rigid_body_header;
-    rows_.rigid_bodies += rigid_rows.str();
+    add_optional(rigid_body_header, rigid_rows.str(), rows_.rigid_bodies);
 
     auto         energy_row = row();
     const double imbalance  = energies.imbalance();
@@ -162,9 +182,7 @@ namespace Nodus
       rows << increment << ',' << t << ',' << quoted(point.name);
       print(rows, point);
     }
-    if (rows_.points.empty() && !points.empty())
-      rows_.points = point_header;
-    rows_.points += rows.str();
+    add_optional(point_header, rows.str(), rows_.points);
   }
 
   void Tables::add_lines(const unsigned int increment, const double t, const std::vector<PointRow> &points)
@@ -175,9 +193,7 @@ namespace Nodus
       rows << increment << ',' << t << ',' << quoted(point.name) << ',' << point.distance;
       print(rows, point);
     }
-    if (rows_.lines.empty() && !points.empty())
-      rows_.lines = line_header;
-    rows_.lines += rows.str();
+    add_optional(line_header, rows.str(), rows_.lines);
   }
 
   void Tables::continue_from(const Rows &rows)
@@ -189,6 +205,7 @@ namespace Nodus
   void Tables::write() const
   {
     for (const auto &[name, rows] : {std::pair<const char *, const std::string *>{"contact.csv", &rows_.contact},
+                                     {"masters.csv", &rows_.masters},
                                      {"reactions.csv", &rows_.reactions},
                                      {"rigid_bodies.csv", &rows_.rigid_bodies},
                                      {"points.csv", &rows_.points},

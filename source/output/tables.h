@@ -16,15 +16,16 @@
 
 namespace Nodus
 {
-  /// contact.csv (one row per increment and pair), reactions.csv (one row per increment and displacement condition),
+  /// contact.csv (one row per increment and pair), masters.csv (one row per increment and body of pairs with several
+  /// master bodies, if there are any), reactions.csv (one row per increment and displacement condition),
   /// rigid_bodies.csv (one row per increment and rigid body with free components, if there are any), energy.csv (one
   /// row per increment), points.csv and lines.csv (one row per point that is asked for) and convergence.csv (one row
   /// per Newton iteration), rewritten as a whole after each increment (temporary name, then rename) by rank 0.
   class Tables
   {
   public:
-    /// Collective. @throws InputError when the folder cannot be created or written.
-    Tables(const std::string &folder, MPI_Comm communicator);
+    /// @p bodies: their names. Collective. @throws InputError when the folder cannot be created or written.
+    Tables(const std::string &folder, MPI_Comm communicator, const std::vector<std::string> &bodies);
 
     struct Reaction
     {
@@ -74,7 +75,7 @@ namespace Nodus
     struct Rows
     {
       std::string contact, reactions, energies, iterations; ///< with the headers
-      std::string rigid_bodies, points, lines;              ///< likewise, empty without any
+      std::string masters, rigid_bodies, points, lines;     ///< likewise, empty without any
     };
     const Rows &rows() const
     {
@@ -88,10 +89,11 @@ namespace Nodus
     void write(const std::string &name, const std::string &rows) const;
     void finish_iterations();
 
-    std::string            folder_;
-    MPI_Comm               communicator_;
-    std::vector<Iteration> iterations_;
-    Rows                   rows_;
+    std::string              folder_;
+    MPI_Comm                 communicator_;
+    std::vector<std::string> bodies_;
+    std::vector<Iteration>   iterations_;
+    Rows                     rows_;
   };
 } // namespace Nodus
 

@@ -98,6 +98,8 @@ namespace Nodus
       message.resize(last_word + 1);
     }
     std::cerr.rdbuf(screen);
+    if (message.find("\"table\"") != std::string::npos)
+      message += "; 'table' is known in 'Value' of boundary conditions that have a 'Table file' or 'Table times'";
     return message;
   }
 

@@ -1,6 +1,8 @@
 #include "parameters/named_ids.h"
 #include "base/suggestion.h"
+#include "parameters/body_names.h"
 #include "parameters/generators.h"
+#include "parameters/id_or_name.h"
 #include "parameters/parameter_file.h"
 #include "parameters/physical_names.h"
 #include <nodus/parameters/parameters.h>
@@ -12,7 +14,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
-#include <memory>
 
 namespace Nodus
 {
@@ -20,52 +21,6 @@ namespace Nodus
   {
     /// So many names of a file are listed where one is wrong.
     constexpr std::size_t most_listed = 30;
-
-    bool is_id(const std::string &text)
-    {
-      return !text.empty() && text.size() <= 10 && text.find_first_not_of("0123456789") == std::string::npos &&
-             std::stoul(text) <= std::numeric_limits<int>::max();
-    }
-
-    bool is_number(const std::string &text)
-    {
-      try
-      {
-        dealii::Utilities::string_to_double(text);
-        return true;
-      }
-      catch (const std::exception &)
-      {
-        return false;
-      }
-    }
-
-    class IdOrName : public dealii::Patterns::PatternBase
-    {
-    public:
-      bool match(const std::string &text) const override
-      {
-        return is_id(text) || (!text.empty() && !is_number(text));
-      }
-      std::string description(const OutputStyle = Machine) const override
-      {
-        return "[Id or name]";
-      }
-      std::unique_ptr<PatternBase> clone() const override
-      {
-        return std::make_unique<IdOrName>();
-      }
-    };
-
-    std::string joined(const std::vector<unsigned int> &ids, const std::vector<std::string> &names)
-    {
-      std::string text;
-      for (const unsigned int id : ids)
-        text += (text.empty() ? "" : ", ") + std::to_string(id);
-      for (const std::string &name : names)
-        text += (text.empty() ? "" : ", ") + name;
-      return text;
-    }
 
     template <typename Number>
     void add_once(const Number id, std::vector<Number> &ids)
@@ -114,6 +69,10 @@ namespace Nodus
           if (!ids(b, surface ? Kind::volume : Kind::surface, name).empty())
             text += ", and '" + name + "' is a " + (surface ? "volume" : "surface") + " of it";
         }
+        for (unsigned int b = 0; b < bodies_.size(); ++b)
+          if (std::find(which.begin(), which.end(), b) == which.end() && !ids(b, kind, name).empty())
+            text += "; body " + std::to_string(b + 1) + (bodies_[b].name.empty() ? "" : " (" + bodies_[b].name + ")") +
+                    " has it";
         const auto near = nearest(name, all);
         return "names '" + name + "', which is no physical " + (surface ? "surface" : "volume") + " of " +
                (which.size() == 1 ? "body " + std::to_string(which[0] + 1) : "any body") + text +
@@ -170,27 +129,8 @@ namespace Nodus
     void resolve_bodies(const Side &side, const std::vector<BodyParameters> &bodies)
     {
       for (const std::string &name : side.region.body_names)
-      {
-        const auto body =
-            std::find_if(bodies.begin(), bodies.end(), [&name](const BodyParameters &b) { return b.name == name; });
-        if (body == bodies.end())
-        {
-          std::vector<std::string> names;
-          std::string              list;
-          for (const BodyParameters &b : bodies)
-          {
-            names.push_back(b.name);
-            list +=
-                (list.empty() ? "" : ", ") + std::to_string(names.size()) + (b.name.empty() ? "" : " (" + b.name + ")");
-          }
-          const auto near = nearest(name, names);
-          side.file.refuse(side.section,
-                           prefixed(side.prefix, "Body"),
-                           "names '" + name + "', which no body has as its Name; the bodies are " + list +
-                               (near.empty() ? "" : did_you_mean(near)));
-        }
-        side.region.bodies.push_back(body - bodies.begin() + 1);
-      }
+        side.region.bodies.push_back(
+            number_of_body(name, bodies, side.file, side.section, prefixed(side.prefix, "Body")));
       side.region.body_names.clear();
     }
 
@@ -274,29 +214,6 @@ namespace Nodus
                    });
   }
 
-  void add_bodies(dealii::ParameterHandler &prm,
-                  const std::string        &key,
-                  RegionParameters         &region,
-                  const std::string        &documentation)
-  {
-    prm.declare_entry(key,
-                      region.bodies.empty() ? "0" : joined(region.bodies, region.body_names),
-                      dealii::Patterns::List(IdOrName(), 1, std::numeric_limits<unsigned int>::max(), ","),
-                      documentation);
-    prm.add_action(key,
-                   [&region](const std::string &text)
-                   {
-                     region.bodies.clear();
-                     region.body_names.clear();
-                     const auto items = dealii::Utilities::split_string_list(text, ',');
-                     for (const std::string &item : items)
-                       if (!is_id(item))
-                         region.body_names.push_back(item);
-                       else if (items.size() > 1 || item != "0")
-                         region.bodies.push_back(std::stoul(item));
-                   });
-  }
-
   bool RegionParameters::has_body(const unsigned int number) const
   {
     return bodies.empty() || std::find(bodies.begin(), bodies.end(), number) != bodies.end();
@@ -351,6 +268,16 @@ namespace Nodus
       }
     };
     for_each_side([&](const Side &side, bool) { resolve_bodies(side, bodies); });
+    const auto resolve_body = [&](auto &place, const std::string &section)
+    {
+      if (!place.body_name.empty())
+        place.body = number_of_body(place.body_name, bodies, file, section, "Body");
+      place.body_name.clear();
+    };
+    for (unsigned int i = 0; i < parameters.output_points.size(); ++i)
+      resolve_body(parameters.output_points[i], "Output point " + std::to_string(i + 1));
+    for (unsigned int i = 0; i < parameters.output_lines.size(); ++i)
+      resolve_body(parameters.output_lines[i], "Output line " + std::to_string(i + 1));
     for (const BodyParameters &body : bodies)
     {
       std::error_code unknown;

@@ -25,12 +25,6 @@ namespace Nodus
                std::vector<std::string>  &names,
                const std::string         &documentation);
 
-  /// A key "Body": numbers or names of bodies, 0 for every body.
-  void add_bodies(dealii::ParameterHandler &prm,
-                  const std::string        &key,
-                  RegionParameters         &region,
-                  const std::string        &documentation);
-
   /// Replaces all names by the ids that they stand for in the mesh files: each body has its own. Every rank reads the
   /// names itself, and only where one is asked for. Names of
   /// bodies become their numbers. What Parameters::check() refuses is left for it.

@@ -107,10 +107,15 @@ namespace Nodus
                       "has " + std::to_string(load.increments.size()) + " entries for " +
                           std::to_string(load.interval_ends.size()) +
                           " entries of Interval ends; give one number for each interval");
-      section.require(load.viscous_stabilisation == 0. ||
-                          *std::min_element(load.increments.begin(), load.increments.end()) > 1,
+      const std::size_t n_given = load.viscous_stabilisation.size();
+      section.require(n_given == 1 || n_given == load.interval_ends.size(),
                       "Viscous stabilisation",
-                      "is gone at the end of an interval; give every interval 2 Increments at least");
+                      "has " + std::to_string(n_given) + " entries for " + std::to_string(load.interval_ends.size()) +
+                          " entries of Interval ends; give one for all intervals, or one for each");
+      for (unsigned int i = 0; i < load.increments.size(); ++i)
+        section.require(load.stabilisation(i) == 0. || load.increments[i] > 1,
+                        "Viscous stabilisation",
+                        "is gone at the end of an interval; give every interval that has it 2 Increments at least");
       section.require(load.maximum_increment == 0. || load.minimum_increment <= load.maximum_increment,
                       "Minimum increment",
                       "is larger than Maximum increment; lower it");
@@ -129,7 +134,7 @@ namespace Nodus
                           " entries of Interval ends; give one for all intervals, or one for each");
       if (!load.has_arc_length())
         return;
-      section.require(load.viscous_stabilisation == 0.,
+      section.require(!load.is_stabilised(),
                       "Viscous stabilisation",
                       "resists motions in time, which goes back under 'Control = arc length'; remove it, and hold the "
                       "bodies by conditions or springs that are 'Active until' the end of an interval before");
@@ -198,7 +203,7 @@ namespace Nodus
     {
       const auto check_body = [&](const Section &section, const unsigned int body)
       {
-        section.require(body <= p.bodies.size(),
+        section.require(1 <= body && body <= p.bodies.size(),
                         "Body",
                         "is " + std::to_string(body) + ", but there are " + std::to_string(p.bodies.size()) +
                             " bodies; give the number of one of them");

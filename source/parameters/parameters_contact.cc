@@ -1,3 +1,4 @@
+#include "parameters/body_names.h"
 #include "parameters/general_contact.h"
 #include "parameters/named_ids.h"
 #include "parameters/parameter_file.h"

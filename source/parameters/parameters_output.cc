@@ -1,3 +1,4 @@
+#include "parameters/body_names.h"
 #include "parameters/output_fields.h"
 #include "parameters/parameter_keys.h"
 
@@ -64,7 +65,7 @@ namespace Nodus
     void add_output_point(ParameterHandler &prm, OutputPointParameters &point)
     {
       prm.add_parameter("Name", point.name, "Name in points.csv [-]; empty: point <n>.", Patterns::Anything());
-      prm.add_parameter("Body", point.body, "Number of the body, from 1 [-].", at_least_one);
+      add_body(prm, "Body", point.body, point.body_name, "Number of the body, from 1, or its Name [-].");
       prm.add_parameter("Position",
                         point.position,
                         "Where the point is at the start [length]. It goes with the body; its displacement and stress "
@@ -74,7 +75,7 @@ namespace Nodus
     void add_output_line(ParameterHandler &prm, OutputLineParameters &line)
     {
       prm.add_parameter("Name", line.name, "Name in lines.csv [-]; empty: line <n>.", Patterns::Anything());
-      prm.add_parameter("Body", line.body, "Number of the body, from 1 [-].", at_least_one);
+      add_body(prm, "Body", line.body, line.body_name, "Number of the body, from 1, or its Name [-].");
       prm.add_parameter("From", line.from, "Where the line begins at the start [length].");
       prm.add_parameter("To", line.to, "Where it ends at the start [length].");
       prm.add_parameter("Points",

@@ -211,12 +211,13 @@ namespace Nodus
                         "An increment with at most so many Newton iterations, and no fallback, is "
                         "easy: the next one may be twice as large [-].",
                         count);
-      prm.add_parameter(
-          "Viscous stabilisation",
-          load.viscous_stabilisation,
-          "Dashpots at all nodes for bodies that nothing holds before contact closes, relative to the "
-          "stiffness of the body, e.g. 1e-2; they fade in the course of each interval and are reported [-].",
-          not_negative);
+      prm.add_parameter("Viscous stabilisation",
+                        load.viscous_stabilisation,
+                        "Dashpots at all nodes for bodies that nothing holds before contact closes, relative to the "
+                        "stiffness of the body, e.g. 1e-2; one for all intervals, or one for each: 0 for those that "
+                        "begin with closed "
+                        "contact. They fade in the course of each interval and are reported [-].",
+                        Patterns::List(not_negative, 1, std::numeric_limits<unsigned int>::max(), ","));
       add_control(prm, load);
     }
 
@@ -327,6 +328,16 @@ namespace Nodus
   bool StrategyParameters::uses(const Remedy remedy) const
   {
     return std::find(without.begin(), without.end(), remedy_names[static_cast<unsigned int>(remedy)]) == without.end();
+  }
+
+  double LoadSteppingParameters::stabilisation(const unsigned int interval) const
+  {
+    return viscous_stabilisation[std::min<std::size_t>(interval, viscous_stabilisation.size() - 1)];
+  }
+
+  bool LoadSteppingParameters::is_stabilised() const
+  {
+    return *std::max_element(viscous_stabilisation.begin(), viscous_stabilisation.end()) > 0.;
   }
 
   bool LoadSteppingParameters::has_arc_length(const unsigned int interval) const

@@ -36,8 +36,8 @@ namespace Nodus
       void serialize(Archive &archive, const unsigned int)
       {
         archive &model &path &state &series;
-        archive &rows.contact &rows.reactions &rows.energies &rows.iterations &rows.rigid_bodies &rows.points &rows
-            .lines;
+        archive &rows.contact &rows.reactions &rows.energies &rows.iterations &rows.masters &rows.rigid_bodies &rows
+            .points &rows.lines;
       }
     };
 

@@ -101,7 +101,8 @@ namespace Nodus
           journal.console.line("Files of an earlier run are removed: " + std::to_string(n));
       }
       results.begin_on_mesh();
-      journal.tables = std::make_unique<Tables>(parameters.output.results_folder, model.communicator);
+      journal.tables =
+          std::make_unique<Tables>(parameters.output.results_folder, model.communicator, model.bodies.names());
       journal.diagnosis.begin_run();
     }
     if (restart)

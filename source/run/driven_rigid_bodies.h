@@ -31,6 +31,11 @@ namespace Nodus
     {
       waits_ = 0;
     }
+    /// Corrections so far in which motions waited for friction to resist them.
+    unsigned int waits() const
+    {
+      return waits_;
+    }
 
     /// Takes the rows and columns of coupled faces out of bulk and right-hand side of @p system, to stay there until
     /// add_to() adds them to its border. Collective.

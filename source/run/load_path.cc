@@ -1,11 +1,7 @@
 #include "run/load_path.h"
 #include "base/text.h"
-#include "mesh/sides.h"
 #include "run/unheld_bodies.h"
 
-#include <deal.II/base/mpi.h>
-
-#include <iomanip>
 #include <sstream>
 #include <utility>
 
@@ -13,10 +9,6 @@ namespace Nodus
 {
   namespace
   {
-    /// Forces of viscous stabilisation beyond this part of the largest nodal force are warned of.
-    constexpr double large_drag = 0.01;
-    /// Forces whose noise is so many times what Newton's method asks for are warned of.
-    constexpr double large_noise = 10.;
     /// Times that an increment is halved before the bodies are relaxed, where iterates are not stable.
     constexpr unsigned int patient_halvings = 2;
     /// Of the contact force: the log says nothing of smaller friction.
@@ -29,8 +21,8 @@ namespace Nodus
       : parts_(parts)
       , audit_(parts.model, parts.journal, parts.states, parts.equilibrium)
       , judge_(parts.model, parts.states, parts.equilibrium)
+      , remarks_(parts.model, parts.states, parts.equilibrium, parts.journal.console, parts.path.increment() == 1)
       , first_(parts.path.increment())
-      , never_closed_(parts.model.contact->surfaces().n_pairs(), true)
   {
   }
 
@@ -73,7 +65,7 @@ namespace Nodus
         parts_.checkpointing.write(path);
       begin_interval();
     }
-    warn_of_open_pairs();
+    remarks_.of_path();
   }
 
   /// Contact pairs begin and cease to act between two intervals; checkpoints have the state before that.
@@ -209,9 +201,7 @@ namespace Nodus
     LoadStepping   &path      = parts_.path;
     Journal        &journal   = parts_.journal;
     const Increment increment = parts_.equilibrium.increment();
-    warn_of_lost_partners();
-    warn_of_noise();
-    report_stabilisation();
+    remarks_.of_increment();
     commit();
     path.accept(journal.counts.newton,
                 journal.counts.fallbacks == 0,
@@ -223,8 +213,7 @@ namespace Nodus
       parts_.results.write(increment, path.finished());
     }
     const std::vector<ContactResultants> &resultants = parts_.results.resultants();
-    for (unsigned int p = 0; p < never_closed_.size(); ++p)
-      never_closed_[p] = never_closed_[p] && resultants[p].slip + resultants[p].stick == 0;
+    remarks_.note(resultants);
     if (increment.finds_time())
       journal.console.remark(text("t = ", increment.end));
     journal.console.end_increment(journal.counts, resultants, path.progress());
@@ -296,73 +285,6 @@ namespace Nodus
         text << ", friction by " << change(now[p].friction, before[p].friction) << " %";
       parts_.journal.console.remark(text.str());
     }
-  }
-
-  /// Closed sites without a master point, which slid off the master or went through it, satisfy the equations, too.
-  void LoadPath::warn_of_lost_partners() const
-  {
-    const ContactInterface   &contact  = *parts_.model.contact;
-    const ContactSurfaces    &surfaces = contact.surfaces();
-    const auto               &closed   = parts_.states.committed.contact.statuses.contact;
-    unsigned int              n_closed = 0;
-    std::vector<unsigned int> lost;
-    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
-      if (surfaces.is_owned(s) && surfaces.has_status(s) && closed[s])
-      {
-        ++n_closed;
-        if (!contact.pairing()[s].found && !contact.is_shared_out(s))
-          lost.push_back(s);
-      }
-    const MPI_Comm     communicator = parts_.model.communicator;
-    const unsigned int n_lost       = dealii::Utilities::MPI::sum(static_cast<unsigned int>(lost.size()), communicator);
-    n_closed                        = dealii::Utilities::MPI::sum(n_closed, communicator);
-    if (n_lost > 0)
-      parts_.journal.console.remark("warning: " + std::to_string(n_lost) + " of " + std::to_string(n_closed) +
-                                    " closed sites have no master point any more, first " +
-                                    contact.loci(lost, 1).front() +
-                                    ": they slid off the master surface, or went through it in too large an increment");
-  }
-
-  /// Says what round-off leaves of forces that are small against stiffness times displacement.
-  void LoadPath::warn_of_noise() const
-  {
-    const NodalForces &forces = parts_.equilibrium.forces();
-    const double       lost   = forces.noise * parts_.model.parameters.newton.force_tolerance;
-    if (forces.noise <= large_noise ||
-        std::max(forces.external.linfty_norm(), forces.contact.linfty_norm()) <= lost * forces.largest)
-      return; // the latter: nothing acts
-    std::ostringstream text;
-    text << std::setprecision(2) << "warning: round-off leaves " << lost
-         << " of the largest force unknown: forces are small against the stiffness of the bodies times the size of a "
-            "cell, or times the displacements; bodies that start near each other lose fewer digits";
-    parts_.journal.console.remark(text.str());
-  }
-
-  void LoadPath::warn_of_open_pairs() const
-  {
-    for (unsigned int p = 0; p < never_closed_.size(); ++p)
-      if (never_closed_[p] && first_ == 1)
-        parts_.journal.console.remark(
-            "warning: contact pair " + std::to_string(p + 1) +
-            in_brackets(parts_.model.parameters.contact_pairs[p].name) +
-            " was open at the end of every increment: are its surfaces the right ones? --validate tells its gaps");
-  }
-
-  /// Says how much of the balance of the increment is due to viscous stabilisation.
-  void LoadPath::report_stabilisation() const
-  {
-    if (!parts_.model.stabilisation->acts())
-      return;
-    const NodalForces &forces = parts_.equilibrium.forces();
-    const double       drag   = forces.drag.linfty_norm();
-    const double       part   = drag / forces.scale;
-    std::ostringstream text;
-    text << std::setprecision(2) << "viscous stabilisation carries " << 100. * part << " % of the largest nodal force ("
-         << drag << " of " << forces.scale << ')';
-    if (part > large_drag)
-      text << ": dashpots hold this state in part; they are gone at t = " << parts_.equilibrium.increment().interval_end
-           << ", and if states before that matter, give more increments or a smaller 'Viscous stabilisation'";
-    parts_.journal.console.remark(text.str());
   }
 
   /// The state is the last converged one. @p hint: where to read more. @p may_shrink: smaller increments might help.

@@ -7,6 +7,7 @@
 #include "run/judge.h"
 #include "run/load_stepping.h"
 #include "run/mesh_adaptation.h"
+#include "run/path_remarks.h"
 #include "run/results.h"
 #include "run/strategy.h"
 
@@ -48,23 +49,19 @@ namespace Nodus
     void              judge();
     void              commit();
     void              restore_equilibrium();
-    void              warn_of_lost_partners() const;
-    void              warn_of_noise() const;
-    void              warn_of_open_pairs() const;
-    void              report_stabilisation() const;
     void              say_what_changed(const std::vector<ContactResultants> &before) const;
     [[noreturn]] void give_up(const std::string &reason, const std::string &hint, bool may_shrink);
 
-    RunParts          parts_;
-    EnergyAudit       audit_;
-    Judge             judge_;
-    unsigned int      first_;                    ///< increment of this run
-    std::vector<bool> never_closed_;             ///< by pair
-    unsigned int      cut_backs_        = 0;     ///< since the last increment that converged
-    bool              relaxing_         = false; ///< the increment at hand ...
-    bool              unstable_         = false; ///< ... for iterates of the last attempt at it were not stable
-    bool              relaxed_          = false; ///< since the last increment that converged
-    unsigned int      mesh_repetitions_ = 0;     ///< of the increment at hand on a finer mesh
+    RunParts     parts_;
+    EnergyAudit  audit_;
+    Judge        judge_;
+    PathRemarks  remarks_;
+    unsigned int first_;                    ///< increment of this run
+    unsigned int cut_backs_        = 0;     ///< since the last increment that converged
+    bool         relaxing_         = false; ///< the increment at hand ...
+    bool         unstable_         = false; ///< ... for iterates of the last attempt at it were not stable
+    bool         relaxed_          = false; ///< since the last increment that converged
+    unsigned int mesh_repetitions_ = 0;     ///< of the increment at hand on a finer mesh
   };
 } // namespace Nodus
 

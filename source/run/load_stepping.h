@@ -16,6 +16,7 @@ namespace Nodus
     double       begin = 0., end = 0.;
     double       interval_begin = 0., interval_end = 0.;
     bool         ends_interval = false;
+    double       viscosity     = 0.; ///< `Viscous stabilisation` of the interval
     /// The interval is under arc length: equilibria are followed whether they are stable or not.
     bool   follows_branch = false;
     double arc            = 0.; ///< motion along the last secant; 0: the first increment of an interval [length]
@@ -109,6 +110,7 @@ namespace Nodus
               interval_begin(),
               interval_end(),
               ends_interval(),
+              parameters_.stabilisation(interval_),
               parameters_.has_arc_length(interval_),
               arc_};
     }
@@ -120,6 +122,7 @@ namespace Nodus
               interval_begin(),
               interval_end(),
               time() == interval_begin(),
+              parameters_.stabilisation(interval_),
               parameters_.has_arc_length(interval_)};
     }
     /// Times of increments to come as the user asks for them, and all ends of intervals; of intervals with very many

@@ -1,4 +1,5 @@
 #include "run/model.h"
+#include "base/text.h"
 #include "bulk/rigid_material.h"
 #include "contact/facets.h"
 #include "contact/initial_overlap.h"
@@ -19,6 +20,9 @@ namespace Nodus
 {
   namespace
   {
+    /// Rubber on rubber has about half of it.
+    constexpr double largest_usual_friction = 5.;
+
     std::vector<std::unique_ptr<Material>> make_materials(const std::vector<BodyParameters> &bodies)
     {
       std::vector<std::unique_ptr<Material>> materials;
@@ -103,8 +107,7 @@ namespace Nodus
       treatments.push_back(body.rigid ? BodyParameters::VolumetricTreatment::standard : body.volumetric_treatment);
     solid =
         std::make_unique<SolidAssembler>(dof_handler, *mapping, materials, boundary_conditions->loads(), treatments);
-    stabilisation = std::make_unique<ViscousStabilisation>(
-        parameters.load_stepping.viscous_stabilisation, bodies, materials, dof_handler, *mapping);
+    stabilisation = std::make_unique<ViscousStabilisation>(bodies, materials, dof_handler, *mapping);
     contact.reset(); // what it refers to is made anew
     rigid_bodies.find_nodes(dof_handler, *mapping);
     contact = std::make_unique<ContactInterface>(parameters.contact_pairs,
@@ -197,6 +200,13 @@ namespace Nodus
     const dealii::Mapping<dim> &as_it_is = t > 0. ? deformed : *mapping;
     refuse_hidden_overlap(pairs, contact->surfaces(), bodies, as_it_is, now.unknowns.block(0), t);
     if (t == 0.)
+      for (unsigned int p = 0; p < pairs.size(); ++p)
+        if (pairs[p].friction_coefficient > largest_usual_friction)
+          warnings.push_back(text(pair_label(pairs, p),
+                                  ": 'Friction coefficient' is ",
+                                  pairs[p].friction_coefficient,
+                                  "; it is a ratio of forces, not per cent, and of hard dry bodies rarely above 1"));
+    if (t == 0.)
       for (const std::string &sentence :
            sides_that_stay_facets(parameters, contact->surfaces(), *contact->geometry(), bodies, *mapping))
         warnings.push_back(sentence);
@@ -223,7 +233,8 @@ namespace Nodus
     contact->begin_increment(increment.begin, increment.end, resolved_interference(increment.end));
     for (auto &material : materials)
       material->set_step(increment.duration());
-    stabilisation->set_increment(increment.begin, increment.end, increment.interval_begin, increment.interval_end);
+    stabilisation->set_increment(
+        increment.viscosity, increment.begin, increment.end, increment.interval_begin, increment.interval_end);
   }
 
   void Model::roll_back(States &states)

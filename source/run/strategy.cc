@@ -186,7 +186,7 @@ namespace Nodus
 
   bool Strategy::begins_singular() const
   {
-    if (!equilibrium_.singular() || journal_.counts.newton > 0)
+    if (!equilibrium_.singular() || journal_.counts.newton > equilibrium_.driven().waits())
       return false;
     const ContactSurfaces &surfaces = model_.contact->surfaces();
     unsigned int           changed  = 0;

@@ -44,6 +44,8 @@ namespace Nodus
     if (start && left == 0 && now > 0)
       text << ", close the contact first ('Initial status = closed')";
     text << ", or set 'Load stepping/Viscous stabilisation = 1e-2'";
+    if (model.parameters.load_stepping.interval_ends.size() > 1)
+      text << " (in this interval alone)";
     if (start && 0 < left && left < now)
       text << "; 'Initial status = closed' alone would still leave " << left << " of " << now << " motions free";
 

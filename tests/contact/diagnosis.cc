@@ -117,6 +117,12 @@ int main(int argc, char **argv)
           "--set \"Load stepping/Viscous stabilisation=0.01\" --set \"Load stepping/Increments=4\"\n",
           "`Contact pair 1/Friction coefficient` | 0 | 0.1",
           state});
+  auto then          = free; // dashpots are proposed for the interval alone where nothing holds the block
+  then.load_stepping = {{1., 2.}, {1, 1}};
+  expect("likewise in the first of two intervals",
+         page(then),
+         "a body can move freely",
+         {"--set \"Load stepping/Viscous stabilisation=0.01, 0\" --set \"Load stepping/Increments=4, 1\"\n"});
   const std::string fields = contents(state);
   check("  and its state has the fields",
         fields.find("residual_force") != std::string::npos && fields.find("det_F") != std::string::npos &&
@@ -225,6 +231,16 @@ int main(int argc, char **argv)
   check("statuses of integration points that contradict each other",
         first_change(mixed, SolverFailure::Kind::status_cycle) ==
             "statuses change back and forth: Contact pair 1/Scheme = averaged");
+
+  const auto judged = [&](const unsigned int n_changed)
+  {
+    FailureEvidence evidence;
+    evidence.kind            = SolverFailure::Kind::judged;
+    evidence.n_changed_sites = n_changed;
+    return suspected_causes(p, Diagnosis::History(), evidence).front().name;
+  };
+  check("a state that does not hold, and statuses that change", judged(2) == "statuses change back and forth");
+  check("  without them", judged(0).compare(0, 15, "Newton's method") == 0);
 
   auto twice          = p; // each side is slave of the other one: the same constraints come twice
   twice.bodies[0]     = box("lower", "2,2,1", {0, 0, 0}, {1, 1, 1}, 100, 0.3);

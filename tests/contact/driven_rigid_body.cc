@@ -95,7 +95,7 @@ namespace
     p.bodies[1].rigid_force               = {"0", "0", "-10"};
     p.bodies[1].motion.rotation_centre    = {0.5, 0.5, 1.};
     p.load_stepping.increments            = {4};
-    p.load_stepping.viscous_stabilisation = 1e-2;
+    p.load_stepping.viscous_stabilisation = {1e-2};
     if (loops)
       use_loops(p);
     std::ostringstream text;
@@ -129,6 +129,24 @@ namespace
     }
     if (root())
       check("  after a warning", text.str().find("body 2 (plate) moves along (1 0 0)") != std::string::npos);
+
+    p.bodies[1]                             = box("plate", "3,3,2", {-0.5, -0.5, 1.01}, {1.5, 1.5, 1.5}, 0, 0);
+    p.bodies[1].material                    = MaterialParameters();
+    p.bodies[1].rigid                       = true;
+    p.bodies[1].rigid_free                  = {2};
+    p.bodies[1].rigid_force                 = {"0", "0", "-10*t"};
+    p.contact_pairs[0].friction_coefficient = 0.3;
+    try
+    {
+      ContactProblem problem(p, world(), log());
+      problem.run();
+      check("a gap, friction that may come: the run stops at once", false);
+    }
+    catch (const SolverFailure &failure)
+    {
+      check("a gap, friction that may come: the run stops at once",
+            std::string(failure.what()).find("so the increment was not cut back") != std::string::npos);
+    }
   }
 
   /// The beam turns by M H/(E I); that the force is eccentric on the bent beam changes this by F H^2/(E I) = 0.0012.

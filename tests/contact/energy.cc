@@ -223,7 +223,7 @@ int main(int argc, char **argv)
     p.boundary_conditions[1] = condition("push", Type::traction, region(2, {z_plus}), {2}, {"-1"});
     p.boundary_conditions.push_back(hold("guide", region(2, {x_minus, x_plus, y_minus, y_plus}), {0, 1}));
     p.load_stepping                       = {{1.}, {5}};
-    p.load_stepping.viscous_stabilisation = 1e-2;
+    p.load_stepping.viscous_stabilisation = {1e-2};
     const auto rows                       = run(p, "dashpots");
     Row        change;
     for (const std::string title : {"external work", "stabilisation", "imbalance"})
@@ -248,7 +248,7 @@ int main(int argc, char **argv)
       IncrementLoops     loops(model, journal, states, equilibrium, [] {});
       Strategy           strategy(model, journal, states, equilibrium, loops);
       EnergyAudit        audit(model, journal, states, equilibrium);
-      journal.tables = std::make_unique<Tables>(p.output.results_folder, world());
+      journal.tables = std::make_unique<Tables>(p.output.results_folder, world(), std::vector<std::string>());
       equilibrium.begin_on_mesh();
       model.begin_contact(states, 0.);
       equilibrium.begin_increment(path.at_hand());

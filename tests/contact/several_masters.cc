@@ -1,6 +1,7 @@
 // A block that slides from one body onto the next, which are one master ("Master body = 2, 3"), against closed forms:
 // pressed by the weight N and dragged, it is held by mu N wherever it is, and the two carry N together. On rigid bodies
-// with meshes of their own it has the same pressures, slips and statuses as on a plane.
+// with meshes of their own it has the same pressures, slips and statuses as on a plane. A plate behind another one does
+// not count in the mean gap of what is pressed on the latter (eq. J11).
 
 #include "../cases.h"
 
@@ -51,7 +52,7 @@ namespace
     Parameters p                        = on_slabs(scheme, false);
     p.bodies[2].material.youngs_modulus = 2. * E;
     ContactProblem problem(p, world(), log());
-    double         N_off = 0., F_off = 0., slabs_off = 0., cone_off = 0., second = 0.;
+    double         N_off = 0., F_off = 0., slabs_off = 0., masters_off = 0., cone_off = 0., second = 0.;
     unsigned int   sticking = 0;
     problem.on_increment(
         [&](unsigned int, const double t)
@@ -65,6 +66,10 @@ namespace
           F_off                = std::max(F_off, std::abs(-pair.slave_force[0] / (mu * weight) - 1.));
           for (const unsigned int c : {0, 2})
             slabs_off = std::max(slabs_off, std::abs(slabs[c] - pair.slave_force[c]));
+          for (const unsigned int m : {0, 1})
+            for (const unsigned int c : {0, 2})
+              masters_off =
+                  std::max(masters_off, std::abs(problem.reactions()[m].second[c] + pair.masters[m].force[c]));
           for (unsigned int k = 0; k < fields.X.size(); ++k)
             cone_off = std::max(cone_off, std::abs(fields.friction[k].norm() - mu * fields.pressure[k]));
           second = problem.reactions()[1].second[2] / weight;
@@ -77,6 +82,7 @@ namespace
       check("  friction at each node, off by at most", cone_off, 0., 1e-7, mu * weight);
     check_error("  friction in all, surfaces tilt, off by at most", F_off, 0.005);
     check("  what the slabs are held by, off by at most", slabs_off, 0., 1e-8, weight);
+    check("  what each of them is held by, off the force on it by at most", masters_off, 0., 1e-8, weight);
     check("  the second carries nearly all in the end", second > 0.85 && second < 1.);
     check_equal("  nodes that stick", sticking, 0);
   }
@@ -115,6 +121,30 @@ namespace
     check("  which are most of the way", largest > 1. && largest < 1.1001);
     check_equal("  other statuses", other, 0);
   }
+
+  /// A block goes up by 0.06 under a plate at 0.05; another plate is 0.45 behind that.
+  void check_behind()
+  {
+    Parameters p                       = on_slabs(Scheme::averaged, false);
+    p.bodies                           = {box("block", "3,2,1", {0, 0, 0}, {1, 1, 1}, E, 0.),
+                                          box("near", "2,3,1", {-0.1, -0.1, 1.05}, {1.1, 1.1, 1.1}, E, 0.),
+                                          box("behind", "1,2,1", {-0.2, -0.2, 1.5}, {1.2, 1.2, 2}, E, 0.)};
+    p.boundary_conditions              = {hold("near", region(2, {0, 1, 2, 3, 4, 5}), {0, 1, 2}),
+                                          hold("behind", region(3, {0, 1, 2, 3, 4, 5}), {0, 1, 2}),
+                                          hold("upright", region(1, {z_minus}), {0, 1}),
+                                          drive("up", region(1, {z_minus}), 2, "0.06*t")};
+    p.contact_pairs[0].slave           = region(1, {z_plus});
+    p.contact_pairs[0].master          = region(2, {z_minus});
+    p.contact_pairs[0].master.bodies   = {2, 3};
+    p.contact_pairs[0].search_distance = 1.;
+    p.load_stepping                    = {{1.}, {2}};
+    ContactProblem problem(p, world(), log());
+    problem.run();
+    report("a plate behind another one", "");
+    check("  force on the block", problem.contact_resultants()[0].slave_force[2], -0.01 * E, 1e-8);
+    check("  on the near one", problem.contact_resultants()[0].masters[0].force[2], 0.01 * E, 1e-8);
+    check("  on the one behind", problem.contact_resultants()[0].masters[1].force[2], 0., 1e-12, E);
+  }
 } // namespace
 
 int main(int argc, char **argv)
@@ -125,5 +155,6 @@ int main(int argc, char **argv)
   check_balance("integration points", Scheme::integration_point);
   check_against_plane("rigid slabs, averaged", Scheme::averaged);
   check_against_plane("rigid slabs, nodal", Scheme::nodal);
+  check_behind();
   return 0;
 }

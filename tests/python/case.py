@@ -149,7 +149,7 @@ def test_verdict_of_the_program():
     chosen = {key.allowed: key for key in PROGRAM.reference.keys.values()}
     numbers = ("-1", "0.5", "3", "1e9", "x")
     values = {"number": numbers, "integer": numbers, "bool": ("true", "yes", "1"), "choice": ("no such", ""), "text": ("a b", ""),
-              "file": ("a b",), "list": ("", "0.5", "1, 2, 3", "-1; x", "x", "1,,2", "4, upper ring", "inf")}
+              "file": ("a b",), "id or name": ("2", "lid", "-1", "0.5", ""), "list": ("", "0.5", "1, 2, 3", "-1; x", "x", "1,,2", "4, upper ring", "inf")}
     here = {}
     for key in chosen.values():
         first = key.choices[:1] if key.kind["kind"] != "list" else (", ".join(key.choices[:2]),) if key.choices else ()

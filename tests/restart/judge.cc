@@ -29,7 +29,7 @@ namespace
         , strategy(model, journal, states, equilibrium, loops)
         , judge(model, states, equilibrium)
     {
-      journal.tables = std::make_unique<Tables>(p.output.results_folder, world());
+      journal.tables = std::make_unique<Tables>(p.output.results_folder, world(), std::vector<std::string>());
       equilibrium.begin_on_mesh();
       model.begin_contact(states, 0.);
     }

@@ -211,7 +211,7 @@ namespace
     Results       results(model, journal, states, equilibrium);
     Checkpointing checkpointing(model, journal, states, equilibrium, results);
     LoadStepping  path(p.load_stepping);
-    journal.tables = std::make_unique<Tables>(p.output.results_folder, MPI_COMM_WORLD);
+    journal.tables = std::make_unique<Tables>(p.output.results_folder, MPI_COMM_WORLD, std::vector<std::string>());
     equilibrium.begin_on_mesh();
     model.begin_contact(states, 0.);
 

@@ -40,6 +40,11 @@ class Results:
         return self.table("contact.csv")
 
     @property
+    def masters(self):
+        """masters.csv: force and moment of a pair on each of several master bodies; one row per increment, pair and body."""
+        return self.table("masters.csv")
+
+    @property
     def reactions(self):
         """reactions.csv: forces of the ground on the bodies; one row per increment and displacement condition."""
         return self.table("reactions.csv")
@@ -138,7 +143,7 @@ class Results:
 
     def _repr_html_(self):
         rows = []
-        for file in ("contact.csv", "reactions.csv", "rigid_bodies.csv", "points.csv", "lines.csv", "energy.csv", "convergence.csv"):
+        for file in ("contact.csv", "masters.csv", "reactions.csv", "rigid_bodies.csv", "points.csv", "lines.csv", "energy.csv", "convergence.csv"):
             if os.path.exists(os.path.join(self.folder, file)):
                 there = self.table(file)
                 rows.append([file, f"{len(there)} rows: {', '.join(there.names[:12])}" + ", ..." * (len(there.names) > 12)])

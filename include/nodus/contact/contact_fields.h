@@ -70,6 +70,14 @@ namespace Nodus
     unsigned int open = 0, slip = 0, stick = 0, unpaired = 0; ///< contact sites: nodes or integration points
     /// Status changes of the increment: all, by what contradicted the status (the four kinds), longest cycle.
     unsigned int status_changes = 0, contradictions[4] = {0, 0, 0, 0}, longest_cycle = 0;
+
+    /// One of several bodies that are master: its part of the force on the master, and of the moment.
+    struct OnMaster
+    {
+      unsigned int body; ///< number, from 1
+      Vector3      force, moment;
+    };
+    std::vector<OnMaster> masters; ///< empty where there is one body, no mesh, or self-contact
   };
 
   /// Iterations spent on one increment.

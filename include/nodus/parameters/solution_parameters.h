@@ -79,14 +79,18 @@ namespace Nodus
     std::vector<unsigned int> increments    = {1};  ///< per interval
     bool                      predictor     = true; ///< start where the motion of the last increment leads
     bool                      cut_back      = true; ///< halve increments that fail
-    double       minimum_increment     = 0.; ///< of time, that cut-backs stop at; 0 = 1/64 of the interval's increments
-    double       maximum_increment     = 0.; ///< of time, that increments grow to; 0 = the interval's increments
-    unsigned int easy_iterations       = 10; ///< of Newton, up to which the next increment may be twice as large
-    double       viscous_stabilisation = 0.; ///< [-], see ViscousStabilisation; 0: none
-    std::vector<Control> control       = {Control::time}; ///< of all intervals, or of each
-    double               arc_length    = 0.; ///< motion of an increment [length]; 0: that of the interval's first one
+    double       minimum_increment = 0.; ///< of time, that cut-backs stop at; 0 = 1/64 of the interval's increments
+    double       maximum_increment = 0.; ///< of time, that increments grow to; 0 = the interval's increments
+    unsigned int easy_iterations   = 10; ///< of Newton, up to which the next increment may be twice as large
+    /// Of all intervals, or of each [-], see ViscousStabilisation; 0: none.
+    std::vector<double>  viscous_stabilisation = {0.};
+    std::vector<Control> control               = {Control::time}; ///< of all intervals, or of each
+    double               arc_length = 0.; ///< motion of an increment [length]; 0: that of the interval's first one
     unsigned int         maximum_increments = 1000; ///< of an interval under arc length
 
+    /// #viscous_stabilisation of @p interval, from 0; whether any has it.
+    double stabilisation(unsigned int interval) const;
+    bool   is_stabilised() const;
     /// Whether @p interval, from 0, is under arc length; whether any is.
     bool has_arc_length(unsigned int interval) const;
     bool has_arc_length() const;
@@ -147,17 +151,19 @@ namespace Nodus
   struct OutputPointParameters
   {
     std::string  name;
-    unsigned int body = 1; ///< number, from 1
-    Vector3      position; ///< in the undeformed configuration, as the body stands in the model [length]
+    unsigned int body = 1;       ///< number, from 1
+    Vector3      position;       ///< in the undeformed configuration, as the body stands in the model [length]
+    std::string  body_name = {}; ///< which Parameters::read() replaces by the number
   };
 
   /// Points of a body along a straight line whose values are written.
   struct OutputLineParameters
   {
     std::string  name;
-    unsigned int body = 1;     ///< number, from 1
-    Vector3      from, to;     ///< ends, as OutputPointParameters::position [length]
-    unsigned int points = 101; ///< at equal distances, with both ends
+    unsigned int body = 1;        ///< number, from 1
+    Vector3      from, to;        ///< ends, as OutputPointParameters::position [length]
+    unsigned int points    = 101; ///< at equal distances, with both ends
+    std::string  body_name = {};  ///< which Parameters::read() replaces by the number
   };
 } // namespace Nodus
 

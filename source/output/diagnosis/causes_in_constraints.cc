@@ -122,6 +122,30 @@ namespace Nodus
       causes.push_back(cause);
     }
 
+    /// Of the interval at hand alone: where contact holds the bodies, dashpots would carry loads in its place.
+    void add_stabilisation(const LoadSteppingParameters &load, const History &history, SuspectedCause &cause)
+    {
+      const auto interval = interval_of(load, history);
+      if (load.stabilisation(interval) > 0.)
+        return;
+      std::vector<double> now;
+      for (unsigned int i = 0; i < load.interval_ends.size(); ++i)
+        now.push_back(load.stabilisation(i));
+      auto then      = now;
+      then[interval] = 0.01;
+      SuspectedCause::Change change{"Load stepping/Viscous stabilisation",
+                                    as_list(now),
+                                    as_list(then),
+                                    "dashpots hold the body until contact does"};
+      auto                   increments = load.increments; // dashpots fade in the course of the interval
+      if (increments[interval] == 1)
+      {
+        increments[interval] = 4;
+        change.together.emplace_back("Increments", as_list(increments));
+      }
+      cause.changes.push_back(change);
+    }
+
     void
     add_free_body(const Parameters &parameters, const History &history, const FailureEvidence &evidence, Causes &causes)
     {
@@ -175,16 +199,7 @@ namespace Nodus
       }
       if (touches)
         cause.changes.insert(cause.changes.end(), closures.begin(), closures.end());
-      if (const auto &load = parameters.load_stepping; load.viscous_stabilisation == 0.)
-      {
-        SuspectedCause::Change change{
-            "Load stepping/Viscous stabilisation", "0", "0.01", "dashpots hold the body until contact does"};
-        auto increments = load.increments; // dashpots fade in the course of each interval
-        std::replace(increments.begin(), increments.end(), 1u, 4u);
-        if (increments != load.increments)
-          change.together.emplace_back("Increments", as_list(increments));
-        cause.changes.push_back(change);
-      }
+      add_stabilisation(parameters.load_stepping, history, cause);
       if (!touches) // closing a gap in one step may open all of it in the next
         cause.changes.insert(cause.changes.end(), closures.begin(), closures.end());
       if (open) // where a load closes the gap a soft spring is no match for it

@@ -59,12 +59,12 @@ namespace Nodus
       return {values.end() - std::min(n, values.size()), values.end()};
     }
 
-    std::string as_list(const std::vector<unsigned int> &values)
+    std::size_t interval_of(const LoadSteppingParameters &load, const History &history)
     {
-      std::string list;
-      for (const unsigned int value : values)
-        list += (list.empty() ? "" : ", ") + std::to_string(value);
-      return list;
+      const auto end = std::find_if(load.interval_ends.begin(),
+                                    load.interval_ends.end(),
+                                    [&](const double t) { return history.end <= t * (1. + 1e-12); });
+      return std::min<std::size_t>(end - load.interval_ends.begin(), load.increments.size() - 1);
     }
 
     void add_smaller_increments(const Parameters &parameters, const History &history, SuspectedCause &cause)
@@ -78,12 +78,8 @@ namespace Nodus
                                  load.minimum_increment > 0. ? text(load.minimum_increment) : "0 (automatic)",
                                  text((history.end - history.begin) / 16.),
                                  text("increments may become smaller than ", history.end - history.begin)});
-      const auto end      = std::find_if(load.interval_ends.begin(),
-                                    load.interval_ends.end(),
-                                    [&](const double t) { return history.end <= t * (1. + 1e-12); });
-      const auto interval = std::min<std::size_t>(end - load.interval_ends.begin(), load.increments.size() - 1);
-      auto       more     = load.increments;
-      more[interval] *= 4;
+      auto more = load.increments;
+      more[interval_of(load, history)] *= 4;
       cause.changes.push_back(
           {"Load stepping/Increments", as_list(load.increments), as_list(more), "smaller increments from the start"});
     }
@@ -378,7 +374,8 @@ namespace Nodus
       add_distorted_cells(parameters, history, evidence, causes);
     if (!history.threshold_passes.empty())
       add_threshold_loop(parameters, history, causes);
-    if (!statuses && !in_a_loop && chattering)
+    // loops that end in a state that is no equilibrium do so where statuses contradict each other
+    if (!statuses && !in_a_loop && (chattering || (kind == Kind::judged && evidence.n_changed_sites > 0)))
       add_status_cycle(parameters, history, evidence, causes);
     if (kind == Kind::newton_limit || kind == Kind::newton_stalled || kind == Kind::not_finite || causes.empty())
       add_newton(parameters, history, evidence, causes);

@@ -24,7 +24,17 @@ namespace Nodus
     /// Geometric mean of the ratios of the last few values; 1 for fewer than two.
     double              contraction(const std::vector<double> &values);
     std::vector<double> last_of(const std::vector<double> &values, const std::size_t n);
-    std::string         as_list(const std::vector<unsigned int> &values);
+    /// "1, 2": values of a key.
+    template <typename Value>
+    std::string as_list(const std::vector<Value> &values)
+    {
+      std::string list;
+      for (const Value &value : values)
+        list += (list.empty() ? "" : ", ") + text(value);
+      return list;
+    }
+    /// The one, from 0, that the increment at hand belongs to.
+    std::size_t interval_of(const LoadSteppingParameters &load, const History &history);
     /// Smaller increments, in the terms of the user.
     void add_smaller_increments(const Parameters &parameters, const History &history, SuspectedCause &cause);
     void add_line_search(const Parameters &parameters, SuspectedCause &cause);
