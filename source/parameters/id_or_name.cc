@@ -1,28 +1,10 @@
 #include "parameters/id_or_name.h"
+#include "parameters/argument_kind.h"
 
-#include <deal.II/base/utilities.h>
-
-#include <exception>
 #include <limits>
 
 namespace Nodus
 {
-  namespace
-  {
-    bool is_number(const std::string &text)
-    {
-      try
-      {
-        dealii::Utilities::string_to_double(text);
-        return true;
-      }
-      catch (const std::exception &)
-      {
-        return false;
-      }
-    }
-  } // namespace
-
   bool is_id(const std::string &text)
   {
     return !text.empty() && text.size() <= 10 && text.find_first_not_of("0123456789") == std::string::npos &&
@@ -41,7 +23,7 @@ namespace Nodus
 
   bool IdOrName::match(const std::string &text) const
   {
-    return is_id(text) || (!text.empty() && !is_number(text));
+    return is_id(text) || (!text.empty() && !matches(ArgumentKind::number, text));
   }
 
   std::string IdOrName::description(const OutputStyle) const
