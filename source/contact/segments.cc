@@ -13,8 +13,6 @@ namespace Nodus
   {
     /// Overlaps below this fraction of a slave cell are round-off.
     constexpr double smallest_overlap = 1e-10;
-    /// Of a slave cell: overlaps that exceed it by more lie one behind the other.
-    constexpr double smallest_layer = 1e-8;
     /// Of the reach: a face this much nearer than another one is before it.
     constexpr double round_off = 1e-6;
 
@@ -206,10 +204,6 @@ namespace Nodus
               (self_->may_touch(f_, m) && !self_->is_beyond(m, plane.origin, plane.normal, self_->most_visible(f_))))
             for (unsigned int cell = 0; cell < n_cells(degree_); ++cell)
               add_overlap(window, plane, middle, cell_area, m, cell);
-        double area = 0.;
-        for (const Overlap &overlap : overlaps())
-          area += overlap.polygon.area();
-        layered_ = area > (1. + smallest_layer) * cell_area;
       }
 
       /// Unless it is next to nothing, or the cells do not face each other.
@@ -304,7 +298,7 @@ namespace Nodus
             if (self_ != nullptr &&
                 -(gap * plane.normal) > self_->visible(f_, xi, eta, overlap.m, master.xi, master.eta))
               continue;
-            const double part = layered_ ? overlap.part * seen(overlap, p) : overlap.part;
+            const double part = overlap.part * seen(overlap, p);
             if (part == 0.)
               continue;
             const double area = part * twice_area * rule.weight(q);
@@ -327,7 +321,6 @@ namespace Nodus
       const unsigned int        f_, degree_;
       std::vector<MortarPoint> &points_;
       SegmentTrace             &trace_;
-      bool                      layered_   = false; ///< several master cells are over a place of the present cell
       double                    face_area_ = 0., covered_ = 0., twice_counted_ = 0.; ///< with the part, with its square
     };
   } // namespace

@@ -200,16 +200,17 @@ namespace Nodus
     const dealii::Mapping<dim> &as_it_is = t > 0. ? deformed : *mapping;
     refuse_hidden_overlap(pairs, contact->surfaces(), bodies, as_it_is, now.unknowns.block(0), t);
     if (t == 0.)
+    {
       for (unsigned int p = 0; p < pairs.size(); ++p)
         if (pairs[p].friction_coefficient > largest_usual_friction)
           warnings.push_back(text(pair_label(pairs, p),
                                   ": 'Friction coefficient' is ",
                                   pairs[p].friction_coefficient,
                                   "; it is a ratio of forces, not per cent, and of hard dry bodies rarely above 1"));
-    if (t == 0.)
       for (const std::string &sentence :
            sides_that_stay_facets(parameters, contact->surfaces(), *contact->geometry(), bodies, *mapping))
         warnings.push_back(sentence);
+    }
     states.committed = now;
     return warnings;
   }

@@ -144,6 +144,24 @@ namespace
     check("  force on the block", problem.contact_resultants()[0].slave_force[2], -0.01 * E, 1e-8);
     check("  on the near one", problem.contact_resultants()[0].masters[0].force[2], 0.01 * E, 1e-8);
     check("  on the one behind", problem.contact_resultants()[0].masters[1].force[2], 0., 1e-12, E);
+
+    // both over less than a half of a face: the same with and without the one behind
+    p.bodies[0] = box("block", "1,1,1", {0, 0, 0}, {1, 1, 1}, E, 0.);
+    p.bodies[1] = box("near", "2,3,1", {-0.1, -0.1, 1.05}, {0.4, 1.1, 1.1}, E, 0.);
+    p.bodies[2] = box("behind", "1,2,1", {-0.2, -0.2, 1.5}, {0.3, 1.2, 2}, E, 0.);
+    Vector3 force[2];
+    for (const unsigned int behind : {0, 1})
+    {
+      if (behind == 0)
+        p.contact_pairs[0].master.bodies = {2};
+      else
+        p.contact_pairs[0].master.bodies = {2, 3};
+      ContactProblem part(p, world(), log());
+      part.run();
+      force[behind] = part.contact_resultants()[0].slave_force;
+    }
+    check("  both over a part of it", force[1][2], force[0][2], 1e-10);
+    check("  which carries", force[1][2] < -1.);
   }
 } // namespace
 

@@ -352,15 +352,10 @@ class Segments:
         for c in range(2):
             near &= (shadow[..., c].max(2) > flat[..., c].min(1)[:, None]) & (shadow[..., c].min(2) < flat[..., c].max(1)[:, None])
         self.polygons = [(s, m, clip(flat[s], shadow[s, m][::-1])) for s, m in zip(*np.where(near))]
-        self.layers = {}  # of cells with master cells one behind the other: these, with height over the plane and slopes
-        for s in np.unique([s for s, _, _ in self.polygons]):
-            over = [(m, polygon) for cell, m, polygon in self.polygons if cell == s and polygon]
-            window = 0.5 * np.linalg.norm(self.diagonal[s])
-            if sum(area_of(polygon) for _, polygon in over) > (1 + 1e-8) * window:
-                self.layers[s] = []
-                for m, polygon in over:
-                    rises = theirs[m] / (theirs[m] @ normal[s])
-                    self.layers[s].append((m, polygon, (mc[m].mean(0) - sc[s, 0]) @ rises, -self.axes[s] @ rises))
+        with np.errstate(divide="ignore", invalid="ignore"):  # those across have no part
+            rises = theirs / (normal @ theirs.T)[..., None]  # of planes of master cells, (s, m, 3)
+        self.height = np.einsum("smc,smc->sm", mc.mean(1) - sc[:, None, 0], rises)  # over the plane of the slave cell
+        self.slope = -np.einsum("sac,smc->sma", self.axes, rises)
 
     def points(self, first, fine=False):
         """Points on triangles around corner `first` of each overlap: f, xi, eta, w (without element of area), master face, xi', eta';
@@ -389,23 +384,18 @@ class Segments:
         coverage = once / np.bincount(self.sf, whole, len(slave.faces)) / counted
         return [v[good] for v in (f, xi, eta, part * area / det, m, a, b)] + [coverage, counted]
 
-
     def seen(self, cell, other, at):
         """What nearer master cells leave of the part of each point (J11)."""
         left = np.ones(len(cell))
-        for s, layers in self.layers.items():
-            heights = {m: height + np.array(at) @ slope for m, _, height, slope in layers}
-            for q in np.where(cell == s)[0]:
-                own = abs(heights[other[q]][q]) - 1e-6 * self.reach
-                hidden = [self.part[s, m] for m, polygon, _, _ in layers
-                          if self.mf[m] != self.mf[other[q]] and abs(heights[m][q]) < own and inside(polygon, at[q])]  # fmt: skip
-                left[q] = 1 - max(hidden, default=0)
+        own = np.abs(self.height[cell, other] + (self.slope[cell, other] * at).sum(1)) - 1e-6 * self.reach
+        first, last = np.searchsorted(cell, np.arange(len(self.sf))), np.searchsorted(cell, np.arange(len(self.sf)), "right")
+        for s, m, polygon in self.polygons:
+            here = np.arange(first[s], last[s])
+            before = np.abs(self.height[s, m] + at[here] @ self.slope[s, m]) < own[here]
+            for q in here[before & (self.mf[other[here]] != self.mf[m])]:
+                if polygon and inside(polygon, at[q]):
+                    left[q] = min(left[q], 1 - self.part[s, m])
         return left
-
-
-def area_of(polygon):
-    x, y = np.array(polygon).T
-    return 0.5 * abs(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
 def inside(polygon, p):
