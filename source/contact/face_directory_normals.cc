@@ -18,7 +18,7 @@ namespace Nodus
 
     FaceKey key(const FaceRecord &face)
     {
-      return {face.pair, face.side, face.number};
+      return {{face.pair, face.side, face.number}};
     }
 
     /// What the owner of a corner of a face knows of it.
