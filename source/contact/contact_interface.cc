@@ -1,4 +1,5 @@
 #include "contact/contact_interface.h"
+#include "contact/carried_multipliers.h"
 #include "contact/geometry_tangent.h"
 #include "contact/intrusion.h"
 #include "contact/loci.h"
@@ -50,7 +51,7 @@ namespace Nodus
   {
     status_.begin_increment();
     pairing_.set_partnered(now_.statuses.contact);
-    averaged_.set_constrained(now_.statuses.contact);
+    averaged_.set_constrained(now_.constrained());
   }
 
   // ---------------------------------------------------------------------------------------------------- geometry pass
@@ -95,23 +96,9 @@ namespace Nodus
     surfaces_.fetch_masters(unknowns.block(0));
     gather(unknowns, start);
     freeze_geometry();
+    hand_on(surfaces_, pairing_, status_, now_, state_);
     status_.inherit(pairing_);
-    for (unsigned int k = 0; k < surfaces_.n_owned_slave_nodes(); ++k)
-    {
-      const DoFIndex multiplier = surfaces_.multiplier(k);
-      Vector3        Lambda;
-      for (unsigned int i = 0; i < 2; ++i)
-        Lambda += state_.Lambda[k][i] * now_.tangents[k][i];
-      double component[2] = {0., 0.};
-      for (unsigned int i = 0; i < 2; ++i)
-        if (pairing_[k].found && pairing_[k].tangent_free[i])
-          component[i] = Lambda * pairing_[k].tangent[i];
-      const double norm = std::hypot(component[0], component[1]);
-      for (unsigned int i = 0; i < 2; ++i)
-        unknowns.block(2)(2 * multiplier + i) = norm > 0. ? component[i] * Lambda.norm() / norm : 0.;
-      const double ratio            = now_.area[k] > 0. ? now_.area[k] / weights_.area()[k] : 1.;
-      unknowns.block(1)(multiplier) = pairing_[k].found ? state_.lambda[k] * ratio : 0.;
-    }
+    carry_over(surfaces_, pairing_, weights_, now_, state_, unknowns);
     keep_frames();
     unknowns.block(1).compress(dealii::VectorOperation::insert);
     unknowns.block(2).compress(dealii::VectorOperation::insert);
@@ -130,7 +117,7 @@ namespace Nodus
   {
     status_.resume();
     pairing_.set_partnered(now_.statuses.contact);
-    averaged_.set_constrained(now_.statuses.contact);
+    averaged_.set_constrained(now_.constrained());
     gather(unknowns, start);
   }
 
@@ -160,8 +147,10 @@ namespace Nodus
   void ContactInterface::keep_frames()
   {
     for (unsigned int k = 0; k < now_.tangents.size(); ++k)
+    {
       now_.tangents[k] = pairing_[k].tangent;
-    now_.area = weights_.area();
+      now_.area[k]     = pairing_[k].found ? weights_.area()[k] : 0.;
+    }
   }
 
   void ContactInterface::weigh()
@@ -324,7 +313,7 @@ namespace Nodus
       now_.elastic_slip[k] = status_.elastic_slip(k) * (state_.Lambda[k][0] * pairing_[k].tangent[0] +
                                                         state_.Lambda[k][1] * pairing_[k].tangent[1]);
     now_.jump = displacement_jumps();
-    now_.area = weights_.area();
+    keep_frames();
     now_.stuck.assign(now_.stuck.size(), 0);
     now_.on_new_mesh = false;
     jump_.set_stuck({});

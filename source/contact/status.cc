@@ -13,6 +13,9 @@ namespace Nodus
   {
     /// A test value this close to its bound, relative, is round-off and changes nothing.
     constexpr double noise = 1e-10;
+    /// The gap of a closed node that is larger is what pairing anew has left in a merged loop, and the next correction
+    /// closes it [face].
+    constexpr double settled_gap = 1e-6;
     /// A merged loop may come back to a visited status vector this often while the iterate still moves.
     constexpr unsigned int tolerated_returns = 3;
     /// Passes of a status loop that may go by without fewer changes than before.
@@ -114,8 +117,18 @@ namespace Nodus
     update_floor();
   }
 
+  void Status::take_over(const unsigned int site, const unsigned int giver)
+  {
+    now_.contact[site]   = true;
+    now_.stick[site]     = now_.stick[giver];
+    now_.threshold[site] = now_.threshold[giver];
+  }
+
   void Status::inherit(const Pairing &pairing)
   {
+    surfaces_.site_exchange().update(now_.contact);
+    surfaces_.site_exchange().update(now_.stick);
+    surfaces_.site_exchange().update(now_.threshold);
     for (unsigned int k = 0; k < now_.contact.size(); ++k)
       if (!pairing[k].found)
         now_.contact[k] = false;
@@ -132,6 +145,12 @@ namespace Nodus
     // without friction the nodal means obey the same equations for all weights
     return pairs_[pair].scheme != ContactPairParameters::Scheme::integration_point &&
            pairs_[pair].weights == ContactPairParameters::Weights::consistent && limits_[pair].exists();
+  }
+
+  bool Status::has_own_gap(const unsigned int pair) const
+  {
+    return pairs_[pair].scheme != ContactPairParameters::Scheme::integration_point &&
+           pairs_[pair].weights != ContactPairParameters::Weights::consistent;
   }
 
   bool Status::can_regularise() const
@@ -191,8 +210,12 @@ namespace Nodus
     size                 = 0.;
     if (law == ContactLaw::tied)
       return Contradiction::none;
-    const double value = input.pressure[site] - normal_augmentation(site) * input.distance[site];
-    const bool   pulls = now_.contact[site] && value > noise * pressure && law != ContactLaw::bilateral;
+    const unsigned int pair = surfaces_.pair(site);
+    const bool         left = merged_ && now_.contact[site] && has_own_gap(pair) &&
+                      input.distance[site] < -settled_gap * surfaces_.face_size(pair);
+    const double distance = left ? 0. : input.distance[site];
+    const double value    = input.pressure[site] - normal_augmentation(site) * distance;
+    const bool   pulls    = now_.contact[site] && value > noise * pressure && law != ContactLaw::bilateral;
     if (pulls || (!now_.contact[site] && value < -noise * pressure))
     {
       size = pressure > 0. ? std::abs(value) / pressure : 1.;

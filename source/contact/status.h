@@ -164,7 +164,9 @@ namespace Nodus
     void initialize(const Pairing &pairing, const std::vector<double> &distance, double t);
     /// Imposes the state of one site: S, S_f and mu lambda_s; call it on every rank that has the site. Collective.
     void assign(unsigned int site, bool contact, bool stick, double threshold);
-    /// Sites that lost their partner open.
+    /// The open @p site closes as @p giver is. Of its owner; inherit() tells the others.
+    void take_over(unsigned int site, unsigned int giver);
+    /// Sites that lost their partner open. Collective.
     void inherit(const Pairing &pairing);
 
     struct Change
@@ -307,6 +309,8 @@ namespace Nodus
     }
     bool can_project(unsigned int pair) const;
     bool can_lump(unsigned int pair) const;
+    /// Its closed nodes have no gap once the system is solved: they share their multipliers with no other site.
+    bool has_own_gap(unsigned int pair) const;
     bool can_regularise() const;
     void update_floor();
     void note_friction();
