@@ -139,6 +139,38 @@ namespace Nodus
       return slaves;
     }
 
+    /// A surface that touches itself goes around the edges of bodies. What looks elsewhere than the covered faces at a
+    /// node is not of the surface around it that these are a part of.
+    void leave_out_beyond_edges(const ContactSurfaces &surfaces, std::vector<FaceRows> &faces)
+    {
+      std::vector<Vector3> normal(surfaces.slave_nodes().size()); // of the covered parts, complete for owned nodes
+      const auto           for_each = [&](const auto &f)
+      {
+        for (FaceRows &face : faces)
+        {
+          if (!surfaces.touches_itself(face.pair))
+            continue;
+          const std::vector<unsigned int> slaves    = slaves_of(surfaces, face);
+          const unsigned int              n_columns = face.nodes.size() + 2;
+          for (unsigned int a = 0; a < slaves.size(); ++a)
+            f(face, a, normal[slaves[a]], face.weights.data() + (a + 1) * n_columns - 2);
+        }
+      };
+      for_each(
+          [](const FaceRows &face, const unsigned int a, Vector3 &n, const double *)
+          {
+            for (unsigned int c = 0; c < dim; ++c)
+              n[c] += face.vectors[FaceRows::n_vectors * a + dim + c];
+          });
+      for_each(
+          [](const FaceRows &face, const unsigned int, const Vector3 &n, double *const area)
+          {
+            const Vector3 outward({face.outward[0], face.outward[1], face.outward[2]});
+            if (area[0] == 0. && n != Vector3())
+              area[1] *= facing(outward * n / n.norm()).part;
+          });
+    }
+
     /// Sums over faces become means; a node with next to no partner loses its row.
     void normalise(AveragedJump::Row &row)
     {
@@ -319,7 +351,8 @@ namespace Nodus
     }
     if (!any)
       return;
-    const std::vector<FaceRows> around = collect(surfaces, faces_, std::move(mine));
+    std::vector<FaceRows> around = collect(surfaces, faces_, std::move(mine));
+    leave_out_beyond_edges(surfaces, around);
     share_out(surfaces, around);
     for (const FaceRows &face : around)
       add(surfaces, face);

@@ -136,18 +136,28 @@ namespace Nodus
                                           const double               part,
                                           const SelfContact::Seeker &seeker) const
   {
-    thread_local std::vector<unsigned int> faces;
-    dealii::BoundingBox<dim>               around({p, p});
+    namespace bgi = boost::geometry::index;
+    // Boxes in ascending distance, of those that may be partners: most that are nearby are its own neighbours.
+    thread_local std::vector<std::pair<double, unsigned int>> faces;
+    dealii::BoundingBox<dim>                                  around({p, p});
     around.extend(reach);
-    candidates(around, faces);
+    faces.clear();
+    for (auto leaf = tree_->leaves.qbegin(bgi::intersects(around)); leaf != tree_->leaves.qend(); ++leaf)
+      if (const unsigned int f = leaf->second;
+          centre_normal_[f] * normal <= SelfContact::averted_cosine && seeker.may_meet(f, p, normal))
+        faces.emplace_back(squared_distance(leaf->first, p), f);
+    std::sort(faces.begin(), faces.end());
     Closest best{{}, reach * reach};
-    for (const unsigned int f : faces)
+    for (const auto &[least, f] : faces)
     {
-      if (centre_normal_[f] * normal > SelfContact::averted_cosine || !seeker.may_meet(f, p, normal))
-        continue;
+      if (least > best.distance)
+        break;
       Projection   at{f};
       const double d2 = closest_point(master_, f, p, at.xi, at.eta);
-      if ((master_.position(f, at.xi, at.eta) - p) * normal >= -seeker.visible(f, at.xi, at.eta))
+      // a face that is beside it is not far along its own normal, but may be along that of the face
+      const Vector3 apart  = master_.position(f, at.xi, at.eta) - p;
+      const double  height = std::min(apart * normal, -(apart * master_.normal(f, at.xi, at.eta)));
+      if (height >= 0. || height >= -seeker.visible(f, at.xi, at.eta))
         best.take(at, d2, size_[f]);
     }
     return best.at.found() && seeker.is_slave(best.at.face) ? within_rim(best.at, p, part) : Projection();
@@ -194,7 +204,7 @@ namespace Nodus
                           pairs[p].projection_tolerance,
                           pairs[p].scheme == ContactPairParameters::Scheme::averaged &&
                               pairs[p].integration == ContactPairParameters::Integration::segment);
-      self.push_back(pairs[p].self_contact ? std::make_unique<SelfContact>(surfaces, slave[p], master[p], reach[p])
+      self.push_back(pairs[p].self_contact ? std::make_unique<SelfContact>(surfaces, p, slave[p], master[p], reach[p])
                                            : nullptr);
       rigid.push_back(surfaces.rigid_master(p));
       overhang.push_back(pairs[p].projection_tolerance * surfaces.face_size(p));

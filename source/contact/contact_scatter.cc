@@ -23,22 +23,60 @@ namespace Nodus
       , pairing_(pairing)
       , jump_(jump)
       , state_(state)
-      , shares_(surfaces.layout().n_rigid > 0 ? surfaces.n_sites() : 0)
       , jump_residual_(3 * surfaces.n_sites(), 0.)
       , jump_rhs_(3 * surfaces.n_sites(), 0.)
       , law_residual_(4 * surfaces.slave_nodes().size(), 0.)
       , law_rhs_(3 * surfaces.slave_nodes().size(), 0.)
   {
-    for (unsigned int s = 0; s < shares_.size(); ++s)
-      for (auto e = jump.begin(s); e != jump.end(s); ++e)
-        if (const unsigned int body = surfaces.rigid_body(e->node); body != dealii::numbers::invalid_unsigned_int)
+    if (surfaces.layout().n_rigid > 0)
+      take_shares();
+  }
+
+  /// A site may meet several bodies. Where all of its master is one of them, this turns as a whole: the turns of its
+  /// nodes (eq. J5) are those of an arm that reaches to the slave.
+  void ContactScatter::take_shares()
+  {
+    shares_of_site_.assign(1, 0);
+    for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
+    {
+      const auto  &n     = jump_.normal(s);
+      unsigned int whole = jump_.middle(s) == jump_.end(s) ? dealii::numbers::invalid_unsigned_int
+                                                           : surfaces_.rigid_body(jump_.middle(s)->node);
+      for (auto e = jump_.middle(s); e != jump_.end(s); ++e)
+        if (surfaces_.rigid_body(e->node) != whole)
+          whole = dealii::numbers::invalid_unsigned_int;
+      for (auto e = jump_.begin(s); e != jump_.end(s); ++e)
+      {
+        const unsigned int body = surfaces_.rigid_body(e->node);
+        if (body == dealii::numbers::invalid_unsigned_int)
+          continue;
+        auto share = std::find_if(shares_.begin() + shares_of_site_.back(),
+                                  shares_.end(),
+                                  [body](const RigidShare &other) { return other.body == body; });
+        if (share == shares_.end())
+          share = shares_.insert(shares_.end(), {s, body, body == whole ? -jump_.lever(s) * n : Vector3(), {}});
+        const Vector3 arm = state_.x[e->node] - state_.centre[body], turn = jump_.lever(s) * e->turn;
+        share->arm += e->weight * arm;
+        for (unsigned int c = 0; c < dim; ++c)
         {
-          shares_[s].body = body; // slave and master are not both rigid
-          shares_[s].weight += e->weight;
-          shares_[s].arm += e->weight * (state.x[e->node] - state.centre[body]);
-          if (e + 1 == jump.end(s)) // turns of a master as a whole: those of an arm that reaches to the slave
-            shares_[s].arm -= jump.lever(s) * jump.normal(s);
+          share->jump[c][c] += e->weight;
+          if (body == whole || turn == Vector3())
+            continue;
+          Vector3 axis;
+          axis[c] = 1.;
+          share->jump[c] += n[c] * turn;
+          share->jump[dim + c] += (dealii::cross_product_3d(axis, arm) * n) * turn;
         }
+      }
+      for (unsigned int i = shares_of_site_.back(); i < shares_.size(); ++i)
+        for (unsigned int c = 0; c < dim; ++c)
+        {
+          Vector3 axis;
+          axis[c] = 1.;
+          shares_[i].jump[dim + c] += dealii::cross_product_3d(axis, shares_[i].arm);
+        }
+      shares_of_site_.push_back(shares_.size());
+    }
   }
 
   void ContactScatter::add_friction_weight(const ContactPoint &point, const LawPoint &law)
@@ -74,14 +112,10 @@ namespace Nodus
           }
         }
       }
-      for (unsigned int c = 0; c < dim && !shares_.empty() && shares_[s].weight != 0.; ++c)
-        surfaces_.for_each_rigid_unknown(shares_[s].body,
-                                         c,
-                                         shares_[s].weight,
-                                         shares_[s].arm,
-                                         [&](const DoFIndex index, const double part) {
-                                           unknowns_.push_back({index, first + c, 1, Vector3({part, 0., 0.})});
-                                         });
+      if (!shares_.empty())
+        for (unsigned int i = shares_of_site_[s]; i < shares_of_site_[s + 1]; ++i)
+          for (unsigned int c = 0; c < 2 * dim; ++c)
+            unknowns_.push_back({surfaces_.layout().rigid(shares_[i].body, c), first, dim, shares_[i].jump[c]});
     }
     const BlockLayout &layout = surfaces_.layout();
     for (unsigned int a = 0; a < sum.n_nodes; ++a)
@@ -205,14 +239,10 @@ namespace Nodus
           add_entry(system.variation, rows_[i], rows_[j], value, system);
   }
 
-  void ContactScatter::add_resultant(std::vector<double> &sum, const RigidShare &share, const Vector3 &force) const
+  void ContactScatter::add_resultant(std::vector<double> &sum, const RigidShare &share, const Vector3 &force)
   {
-    const Vector3 moment = dealii::cross_product_3d(share.arm, force);
-    for (unsigned int c = 0; c < dim && share.weight != 0.; ++c)
-    {
-      sum[2 * dim * share.body + c] += share.weight * force[c];
-      sum[2 * dim * share.body + dim + c] += moment[c];
-    }
+    for (unsigned int c = 0; c < 2 * dim; ++c)
+      sum[2 * dim * share.body + c] += share.jump[c] * force;
   }
 
   void ContactScatter::fill_rhs(LinearSystem &system)
@@ -240,9 +270,11 @@ namespace Nodus
     }
     surfaces_.add(forces, system.rhs.block(0));
     system.border_rhs.assign(2 * dim * surfaces_.layout().n_rigid, 0.);
-    for (unsigned int s = 0; s < shares_.size(); ++s)
-      add_resultant(
-          system.border_rhs, shares_[s], Vector3({jump_rhs_[3 * s], jump_rhs_[3 * s + 1], jump_rhs_[3 * s + 2]}));
+    for (const RigidShare &share : shares_)
+    {
+      const double *const rhs = jump_rhs_.data() + 3 * share.site;
+      add_resultant(system.border_rhs, share, Vector3({rhs[0], rhs[1], rhs[2]}));
+    }
   }
 
   ContactResidual ContactScatter::finish()
@@ -257,9 +289,9 @@ namespace Nodus
       for (unsigned int c = 0; c < dim; ++c)
         result.jump[s][c] = jump_residual_[3 * s + c];
     result.rigid.assign(2 * dim * layout.n_rigid, 0.);
-    for (unsigned int s = 0; s < shares_.size(); ++s)
-      if (surfaces_.is_owned(s) && shares_[s].weight != 0.)
-        add_resultant(result.rigid, shares_[s], result.jump[s]);
+    for (const RigidShare &share : shares_)
+      if (surfaces_.is_owned(share.site))
+        add_resultant(result.rigid, share, result.jump[share.site]);
     for (unsigned int k = 0; k < surfaces_.slave_nodes().size(); ++k)
     {
       const double *const row = law_residual_.data() + 4 * k;
@@ -272,8 +304,8 @@ namespace Nodus
 
   void ContactScatter::add_turns(const ContactResidual &residual, LinearSystem &system) const
   {
-    for (unsigned int s = 0; s < shares_.size(); ++s)
-      if (surfaces_.is_owned(s) && shares_[s].weight != 0.)
-        add_turn(surfaces_.layout(), shares_[s].body, shares_[s].arm, residual.jump[s], system.border);
+    for (const RigidShare &share : shares_)
+      if (surfaces_.is_owned(share.site))
+        add_turn(surfaces_.layout(), share.body, share.arm, residual.jump[share.site], system.border);
   }
 } // namespace Nodus

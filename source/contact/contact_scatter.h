@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 
+#include <array>
 #include <vector>
 
 namespace Nodus
@@ -59,12 +60,12 @@ namespace Nodus
     void add_turns(const ContactResidual &residual, LinearSystem &system) const;
 
   private:
-    /// Part of a driven rigid body in the jump of a site: weight T + omega x arm (eq. R4).
+    /// Part of a driven rigid body in the jump of a site (eq. R4).
     struct RigidShare
     {
-      unsigned int body   = dealii::numbers::invalid_unsigned_int;
-      double       weight = 0.;
-      Vector3      arm;
+      unsigned int                 site, body;
+      Vector3                      arm;  ///< the jump has the part omega x arm [length]
+      std::array<Vector3, 2 * dim> jump; ///< by T and omega
     };
 
     /// An unknown of the system in the local ones of a point: in one of them, or in the components of a jump.
@@ -84,15 +85,17 @@ namespace Nodus
       }
     };
 
+    void take_shares();
     void find_unknowns(const ContactPoint &point, const LawSum &sum) const;
     void add_entry(TripletMatrix &inner, DoFIndex row, DoFIndex column, double value, LinearSystem &system) const;
-    void add_resultant(std::vector<double> &sum, const RigidShare &share, const Vector3 &force) const;
+    static void add_resultant(std::vector<double> &sum, const RigidShare &share, const Vector3 &force);
 
-    const ContactSurfaces  &surfaces_;
-    const Pairing          &pairing_;
-    const JumpOperator     &jump_;
-    const ContactState     &state_;
-    std::vector<RigidShare> shares_; ///< of the sites, empty without driven bodies
+    const ContactSurfaces    &surfaces_;
+    const Pairing            &pairing_;
+    const JumpOperator       &jump_;
+    const ContactState       &state_;
+    std::vector<RigidShare>   shares_;         ///< site by site
+    std::vector<unsigned int> shares_of_site_; ///< where they begin, and the end; empty without driven bodies
     // scratch
     mutable std::vector<Unknown>  unknowns_;
     mutable std::vector<DoFIndex> rows_; ///< the indices of the unknowns, each once

@@ -74,7 +74,7 @@ namespace Nodus
       , part_(face.dual_part())
       , exact_(face.exact_part())
       , counted_(face.coverage.counted)
-      , rows_{face.pair, face_.number, {}, {}, {}, {}}
+      , rows_{face.pair, face_.number, {}, {}, {}, {}, {}}
   {
   }
 
@@ -88,6 +88,8 @@ namespace Nodus
     for (unsigned int q = 0; q < points_.size(); ++q)
       add_point(points_[q], weight_[q]);
     take_exact_areas();
+    const Vector3 outward = slave_.normal(f_, 0.5, 0.5);
+    std::copy(outward.begin_raw(), outward.end_raw(), rows_.outward.begin());
     return std::move(rows_);
   }
 

@@ -4,6 +4,7 @@
 #include "contact/averaged_jump.h"
 
 #include <Eigen/Dense>
+#include <boost/serialization/array.hpp>
 
 #include <vector>
 
@@ -19,11 +20,12 @@ namespace Nodus
     std::vector<DoFIndex> nodes;        ///< likewise: nodes of the face, then master nodes
     std::vector<double>   weights;      ///< per slave node: weight of each node, area, full area
     std::vector<double>   vectors;      ///< per slave node: offset, normal, rigid part
+    std::array<double, 3> outward = {}; ///< of the face in its middle, unit
 
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)
     {
-      archive &pair &number &slaves &nodes &weights &vectors;
+      archive &pair &number &slaves &nodes &weights &vectors &outward;
     }
   };
 

@@ -3,6 +3,7 @@
 #include "contact/surface.h"
 #include "mesh/bodies.h"
 #include "mesh/region.h"
+#include "parameters/general_contact.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -32,11 +33,12 @@ namespace Nodus
       const ContactPairParameters &pair = parameters.contact_pairs[p];
       for (const SurfaceSide side : {slave_side, master_side})
       {
-        if (side == master_side && (pair.has_rigid_master() || pair.self_contact))
+        const RegionParameters master = pair.self_contact ? master_alone(pair) : pair.master;
+        if (side == master_side && (pair.has_rigid_master() || master.bodies.empty()))
           continue;
         const std::string label =
             pair_label(parameters.contact_pairs, p) + (side == slave_side ? ", slave" : ", master");
-        const Region region(side == slave_side ? pair.slave : pair.master, bodies, label);
+        const Region region(side == slave_side ? pair.slave : master, bodies, label);
         unsigned int body = 0; // of the facets, counted from 1
         for (const auto &cell : bodies.triangulation().active_cell_iterators())
           if (cell->is_locally_owned() && is_plane(cell))

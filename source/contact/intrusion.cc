@@ -51,6 +51,14 @@ namespace Nodus
         if (!self_)
           find(master_side, master, slave, masters, slaves);
       }
+      /// The same of a surface that touches itself: @p rigid are those of the master faces that are not slave.
+      void find_self(const std::vector<SurfaceFace> &slaves,
+                     const std::vector<SurfaceFace> &masters,
+                     const std::vector<SurfaceFace> &rigid)
+      {
+        find(slaves, masters);
+        find(master_side, triangles(rigid, now_), triangles(slaves, now_), rigid, slaves);
+      }
 
       /// Nodes of @p side, which has the faces @p own, against the faces @p other. Collective.
       void find(const SurfaceSide               side,
@@ -324,6 +332,8 @@ namespace Nodus
         ;
       else if (master != nullptr)
         search.find(surfaces.slave_faces(p), *master, begin, end);
+      else if (surfaces.touches_itself(p) && surfaces.n_faces(p, master_side) > surfaces.n_faces(p, slave_side))
+        search.find_self(surfaces.slave_faces(p), surfaces.master_faces(p), surfaces.faces_that_are_master_alone(p));
       else
         search.find(surfaces.slave_faces(p), surfaces.master_faces(p));
       result.push_back(search.result());
@@ -345,9 +355,11 @@ namespace Nodus
       Search       search(surfaces, before, now, 0.5 * reach[p], pairs[p].self_contact);
       const double landing = landing_depth * surfaces.face_size(p);
       const auto  &slaves = surfaces.slave_faces(p), &masters = surfaces.master_faces(p);
-      part = std::min({part,
-                       search.part_before_passage(slaves, masters, landing),
-                       pairs[p].self_contact ? 1. : search.part_before_passage(masters, slaves, landing)});
+      part = std::min(part, search.part_before_passage(slaves, masters, landing));
+      part = std::min(part,
+                      pairs[p].self_contact
+                          ? search.part_before_passage(surfaces.faces_that_are_master_alone(p), slaves, landing)
+                          : search.part_before_passage(masters, slaves, landing));
     }
     return dealii::Utilities::MPI::min(part, surfaces.layout().communicator);
   }

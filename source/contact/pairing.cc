@@ -182,7 +182,9 @@ namespace Nodus
       const unsigned int p       = surfaces.pair(s);
       RigidPoint         rigid;
       const double       tolerance = partnered_[s] ? partner_hysteresis : 1.;
-      if (!surfaces.acts(p))
+      const bool         averages  = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
+      // most of a surface that touches itself is near nothing: then nothing has to be looked for
+      if (!surfaces.acts(p) || (geometry.self[p] && averages && !averaged.covered(s)))
         partnered_[s] = false;
       else if (geometry.rigid[p] != nullptr)
         rigid = geometry.closest_on_rigid(p, sites.x[s], sites.normal[s], tolerance);
@@ -195,9 +197,8 @@ namespace Nodus
       else
         pairing.master =
             geometry.closest_to_node(p, surfaces.slave_nodes()[s].node, sites.x[s], sites.normal[s], tolerance);
-      partnered_[s]       = rigid.found || pairing.master.found();
-      const bool averages = pairs[p].scheme == ContactPairParameters::Scheme::averaged;
-      const bool paired   = averages ? averaged.covered(s) : pairing.master.found() || rigid.found;
+      partnered_[s]     = rigid.found || pairing.master.found();
+      const bool paired = averages ? averaged.covered(s) : pairing.master.found() || rigid.found;
       // A node of the integration point scheme needs a frame for its multipliers even where its own projection fails.
       const bool carries_frame = paired || (surfaces.has_points(p) && !surfaces.is_point(s));
       Vector3    normal        = sites.normal[s];

@@ -106,16 +106,17 @@ namespace Nodus
           surface.degree(), plane, [&](const unsigned int n) { return surface.positions()[surface.face(f).nodes[n]]; });
     }
 
-    /// Box around a cell swept along its normal by @p reach to both sides.
-    dealii::BoundingBox<dim> swept_box(const std::array<Point, 4> &corner, const Vector3 &normal, const double reach)
+    /// Box around a cell swept along its normal, so far ahead and behind.
+    dealii::BoundingBox<dim>
+    swept_box(const std::array<Point, 4> &corner, const Vector3 &normal, const double ahead, const double behind)
     {
       Point low = corner[0], high = low;
       for (const Point &x : corner)
         for (unsigned int c = 0; c < dim; ++c)
         {
-          const double swept = reach * std::abs(normal[c]);
-          low[c]             = std::min(low[c], x[c] - swept);
-          high[c]            = std::max(high[c], x[c] + swept);
+          const double ends[] = {ahead * normal[c], -behind * normal[c]};
+          low[c]              = std::min({low[c], x[c] + ends[0], x[c] + ends[1]});
+          high[c]             = std::max({high[c], x[c] + ends[0], x[c] + ends[1]});
         }
       return dealii::BoundingBox<dim>({low, high});
     }
@@ -198,7 +199,8 @@ namespace Nodus
         const Vector3                          middle    = cell_middle(corner);
         face_area_ += cell_area;
         overlaps().clear();
-        search_.candidates(swept_box(corner, plane.normal, reach_), candidates);
+        const double behind = self_ == nullptr ? reach_ : std::min(reach_, self_->most_visible(f_));
+        search_.candidates(swept_box(corner, plane.normal, reach_, behind), candidates);
         for (const unsigned int m : candidates)
           if (self_ == nullptr ||
               (self_->may_touch(f_, m) && !self_->is_beyond(m, plane.origin, plane.normal, self_->most_visible(f_))))
@@ -255,8 +257,9 @@ namespace Nodus
           if (other.part > hidden && other.m != overlap.m)
           {
             const double before = other.height(p);
-            const double depth  = self_ == nullptr ? reach_ : self_->visible(f_, 0.5, 0.5, other.m, 0.5, 0.5);
-            if (std::abs(before) < height && before > -depth && other.polygon.contains(p))
+            if (std::abs(before) < height && other.polygon.contains(p) &&
+                (before >= 0. ||
+                 before > -(self_ == nullptr ? reach_ : self_->visible(f_, 0.5, 0.5, other.m, 0.5, 0.5))))
               hidden = other.part;
           }
         return 1. - hidden;
@@ -295,8 +298,8 @@ namespace Nodus
             const Vector3 gap = master_.position(overlap.m, master.xi, master.eta) - x;
             if (gap.norm() > reach_)
               continue;
-            if (self_ != nullptr &&
-                -(gap * plane.normal) > self_->visible(f_, xi, eta, overlap.m, master.xi, master.eta))
+            const double depth = -(gap * plane.normal);
+            if (self_ != nullptr && depth > 0. && depth > self_->visible(f_, xi, eta, overlap.m, master.xi, master.eta))
               continue;
             const double part = overlap.part * seen(overlap, p);
             if (part == 0.)

@@ -17,6 +17,7 @@ namespace Nodus
   } // namespace
 
   SelfContact::SelfContact(const ContactSurfaces &surfaces,
+                           const unsigned int     pair,
                            const SurfaceGeometry &slave,
                            const SurfaceGeometry &master,
                            const double           reach)
@@ -30,7 +31,7 @@ namespace Nodus
     {
       for (unsigned int f = 0; f < side.n_faces(); ++f)
       {
-        roles.push_back(role(surfaces, side.face(f)));
+        roles.push_back(role(surfaces, pair, side.face(f)));
         of_faces.push_back(nodes(side.face(f)));
       }
     };
@@ -76,9 +77,9 @@ namespace Nodus
     return false;
   }
 
-  SelfContact::Role SelfContact::role(const ContactSurfaces &surfaces, const SurfaceFace &face)
+  SelfContact::Role SelfContact::role(const ContactSurfaces &surfaces, const unsigned int pair, const SurfaceFace &face)
   {
-    Role role{true, 0., surfaces.stiffness(face), face.body, 0., 0., face.number};
+    Role role{surfaces.is_master_alone(pair, face), true, 0., surfaces.stiffness(face), face.body, 0., 0., face.number};
     for (const unsigned int node : face.nodes)
       for (unsigned int c = 0; c < dim; ++c)
         role.held = role.held && surfaces.fixed(node, c);
@@ -96,6 +97,8 @@ namespace Nodus
 
   bool SelfContact::Role::yields_to(const Role &other) const
   {
+    if (rigid != other.rigid)
+      return other.rigid;
     if (held != other.held)
       return other.held;
     if (size < finer * other.size || other.size < finer * size)

@@ -11,13 +11,15 @@
 namespace Nodus
 {
   /// How the faces of a surface that touches itself take each other: which of two is slave, which cannot meet, and how
-  /// far behind a face another one counts (theory section 35). Both sides of such a pair have the same faces.
+  /// far behind a face another one counts (theory section 35). Both sides of such a pair have the same faces, but for
+  /// those of rigid bodies, which are on the master side alone.
   class SelfContact
   {
   public:
-    /// @p slave, @p master: the sides of the pair at the same positions; they and @p surfaces outlive the object. Faces
+    /// @p slave, @p master: the sides of @p pair at the same positions; they and @p surfaces outlive the object. Faces
     /// farther than @p reach do not meet [length].
     SelfContact(const ContactSurfaces &surfaces,
+                unsigned int           pair,
                 const SurfaceGeometry &slave,
                 const SurfaceGeometry &master,
                 double                 reach);
@@ -92,6 +94,7 @@ namespace Nodus
     /// What decides who is slave, in the order of the members (eq. O2).
     struct Role
     {
+      bool         rigid;     ///< of a rigid body
       bool         held;      ///< no node of it can move
       double       size;      ///< reference configuration [length]
       double       stiffness; ///< Young's modulus of the body
@@ -104,7 +107,7 @@ namespace Nodus
     using Nodes = std::vector<unsigned int>; ///< sorted
 
     static bool meet(const Nodes &a, const Nodes &b);
-    static Role role(const ContactSurfaces &surfaces, const SurfaceFace &face);
+    static Role role(const ContactSurfaces &surfaces, unsigned int pair, const SurfaceFace &face);
     /// Of a face, with those that its hanging ones follow.
     static Nodes nodes(const SurfaceFace &face);
     double       thickness(const SurfaceGeometry &side, const unsigned int f, const double xi, const double eta) const

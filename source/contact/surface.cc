@@ -106,6 +106,7 @@ namespace Nodus
     std::vector<FaceRecord> own;
     for (unsigned int p = 0; p < pairs.size(); ++p)
       own.insert(own.end(), directory_.own(p, master_side).begin(), directory_.own(p, master_side).end());
+    directory_.add_layer(own); // for the normals
     take_master_faces(own);
     measure_faces();
     if (std::any_of(pairs.begin(), pairs.end(), [](const auto &pair) { return pair.self_contact; }))
@@ -219,6 +220,20 @@ namespace Nodus
   bool ContactSurfaces::touches_itself(const unsigned int pair) const
   {
     return pairs_[pair].self_contact;
+  }
+
+  bool ContactSurfaces::is_master_alone(const unsigned int pair, const SurfaceFace &face) const
+  {
+    return !pairs_[pair].slave.has_body(face.body);
+  }
+
+  std::vector<SurfaceFace> ContactSurfaces::faces_that_are_master_alone(const unsigned int pair) const
+  {
+    std::vector<SurfaceFace> faces;
+    for (const SurfaceFace &face : master_faces_[pair])
+      if (is_master_alone(pair, face))
+        faces.push_back(face);
+    return faces;
   }
 
   void ContactSurfaces::move_rigid_masters(const double begin, const double end)

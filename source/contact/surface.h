@@ -256,7 +256,10 @@ namespace Nodus
       return rigid_masters_[pair].get();
     }
     bool has_rigid_masters() const;
-    bool touches_itself(unsigned int pair) const; ///< both sides have the same faces
+    bool touches_itself(unsigned int pair) const; ///< the master side has all that the slave side has, ...
+    /// ... and faces of rigid bodies besides, which are master alone.
+    bool                     is_master_alone(unsigned int pair, const SurfaceFace &face) const;
+    std::vector<SurfaceFace> faces_that_are_master_alone(unsigned int pair) const;
     /// Moves them to where they are at the end of an increment, or, those that a body of the model carries, to where
     /// the nodes are: @p positions of all nodes. @throws InputError on every rank
     void move_rigid_masters(double begin, double end);

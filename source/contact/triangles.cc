@@ -303,7 +303,8 @@ namespace Nodus
 
   bool Triangles::counts(const Triangle &triangle, const Height &height, const OwnNode &own) const
   {
-    if (height.normal * own.outward > SelfContact::averted_cosine || !may_meet(triangle, own))
+    if ((own.outward != Vector3() && height.normal * own.outward > SelfContact::averted_cosine) ||
+        !may_meet(triangle, own))
       return false;
     if (own.least > 0.)
       return height.behind && height.distance > own.least;

@@ -26,7 +26,7 @@ namespace Nodus
   struct OwnNode
   {
     std::vector<DoFIndex> nodes;   ///< first degrees of freedom of it and of those that it follows; empty: no such
-    Vector3               outward; ///< unit
+    Vector3               outward; ///< unit; zero: faces count whichever way they look
     /// What the faces at it are in pairs that come before this one: what meets there does not count either.
     std::vector<unsigned int> elsewhere;
     /// Depth up to which faces that have come in count [length]; where @p least is given it looks for the wall behind

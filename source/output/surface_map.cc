@@ -5,6 +5,7 @@
 #include "mesh/sides.h"
 #include "output/vtu_grid.h"
 #include "parallel/throw_everywhere.h"
+#include "parameters/general_contact.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe.h>
@@ -54,8 +55,9 @@ namespace Nodus
         if (pair.has_rigid_master())
           roles.push_back(
               {name + "master", {}, false, false, p, pair.master.bodies.empty() ? 0 : pair.master.bodies[0]});
-        else if (!pair.self_contact)
-          roles.push_back({name + "master", Region(pair.master, bodies, name)});
+        else if (const RegionParameters master = pair.self_contact ? master_alone(pair) : pair.master;
+                 !master.bodies.empty())
+          roles.push_back({name + "master", Region(master, bodies, name)});
       }
       for (unsigned int n = 0; n < parameters.boundary_conditions.size(); ++n)
       {

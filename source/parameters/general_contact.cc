@@ -6,6 +6,8 @@
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/utilities.h>
 
+#include <algorithm>
+
 namespace Nodus
 {
   void add_excluded_bodies(dealii::ParameterHandler &prm, ContactPairParameters &pair)
@@ -33,6 +35,34 @@ namespace Nodus
           region.bodies.push_back(b + 1);
     if (!region.chooses_faces())
       region.where = "1";
+  }
+
+  namespace
+  {
+    template <typename Predicate>
+    void remove_bodies(RegionParameters &region, const Predicate &is_one)
+    {
+      auto &bodies = region.bodies;
+      for (const unsigned int body : bodies)
+        if (is_one(body))
+          region.ids_of_body.erase(body);
+      bodies.erase(std::remove_if(bodies.begin(), bodies.end(), is_one), bodies.end());
+    }
+  } // namespace
+
+  void make_both_sides(ContactPairParameters &pair, const std::vector<BodyParameters> &bodies)
+  {
+    pair.master         = pair.slave;
+    const auto is_rigid = [&](const unsigned int b) { return b >= 1 && b <= bodies.size() && bodies[b - 1].rigid; };
+    if (!std::all_of(pair.slave.bodies.begin(), pair.slave.bodies.end(), is_rigid)) // which is a mistake to speak of
+      remove_bodies(pair.slave, is_rigid);
+  }
+
+  RegionParameters master_alone(const ContactPairParameters &pair)
+  {
+    RegionParameters alone = pair.master;
+    remove_bodies(alone, [&](const unsigned int body) { return pair.slave.has_body(body); });
+    return alone;
   }
 
   void resolve_excluded_bodies(ContactPairParameters             &pair,

@@ -366,7 +366,7 @@ namespace Nodus
     for (auto &pair : parameters.contact_pairs)
       if (pair.self_contact && !pair.has_rigid_master() && pair.master.bodies.empty() && !pair.master.has_ids() &&
           pair.master.where.empty())
-        pair.master = pair.slave;
+        make_both_sides(pair, parameters.bodies);
     parameters.check(text);
     parameters.initialize_plugins(text);
     for (unsigned int b = 0; b < parameters.bodies.size(); ++b)

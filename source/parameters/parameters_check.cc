@@ -1,4 +1,5 @@
 #include "parameters/expression.h"
+#include "parameters/general_contact.h"
 #include "parameters/parameter_checks.h"
 
 #include <algorithm>
@@ -221,7 +222,7 @@ namespace Nodus
       check_names(file, "Output line", p.output_lines);
     }
 
-    /// The bodies of a pair: with meshes, one side to give way, one rigid body at most whose motion a site moves with.
+    /// The bodies of a pair: with meshes, and one side to give way.
     void
     check_bodies(const Section &section, const ContactPairParameters &pair, const std::vector<BodyParameters> &bodies)
     {
@@ -230,13 +231,7 @@ namespace Nodus
         return std::any_of(
             side.bodies.begin(), side.bodies.end(), [&](const unsigned int b) { return is(bodies[b - 1]); });
       };
-      const auto rigid  = [](const BodyParameters &body) { return body.rigid; };
-      const auto driven = [&](const RegionParameters &side)
-      {
-        return std::count_if(side.bodies.begin(),
-                             side.bodies.end(),
-                             [&](const unsigned int b) { return !bodies[b - 1].rigid_free.empty(); });
-      };
+      const auto rigid    = [](const BodyParameters &body) { return body.rigid; };
       const auto meshless = [](const BodyParameters &body) { return !body.has_mesh(); };
       section.require(!some(pair.slave, meshless), "Slave body", "has no mesh; give the number of a body that has one");
       section.require(pair.has_rigid_master() || !some(pair.master, meshless),
@@ -245,16 +240,18 @@ namespace Nodus
       section.require(!pair.has_carried_master() || some(pair.master, rigid),
                       "Master body",
                       "is not rigid and cannot carry a rigid surface; remove it, or set 'Rigid = true' there");
-      const std::pair<const char *, const RegionParameters *> sides[] = {{"Slave body", &pair.slave},
-                                                                         {"Master body", &pair.master}};
-      for (const auto &[key, side] : sides)
-        section.require(driven(*side) <= 1,
-                        key,
-                        "has several rigid bodies that forces drive; give each of them a contact pair of its own");
-      section.require(!pair.self_contact || !some(pair.slave, rigid),
-                      "Slave body",
-                      "has a rigid body, which cannot be slave; name the others, and give the rigid one a contact pair "
-                      "of its own, as master");
+      if (pair.self_contact)
+      {
+        const RegionParameters alone = master_alone(pair);
+        section.require(!some(pair.slave, rigid),
+                        "Slave body",
+                        "has rigid bodies alone, which do not touch each other; name one that can give way");
+        section.require(
+            std::all_of(
+                alone.bodies.begin(), alone.bodies.end(), [&](const unsigned int b) { return rigid(bodies[b - 1]); }),
+            "Master body",
+            "has a body that is not on the slave side, of 'Self contact = true'; remove it, or name it there");
+      }
       section.require(!some(pair.slave, rigid) || !(pair.has_rigid_master() || some(pair.master, rigid)),
                       "Slave body",
                       "is rigid, as is the master: neither can give way; remove the pair");

@@ -1,4 +1,5 @@
 #include "parameters/expression.h"
+#include "parameters/general_contact.h"
 #include "parameters/parameter_checks.h"
 
 #include <algorithm>
@@ -242,12 +243,18 @@ namespace Nodus
     {
       const std::string remove = "has no meaning with 'Self contact = true', where the slave faces touch each other; "
                                  "remove it, or take its faces to those of the slave side";
-      for (const auto &[key, given] : {Given("Master body", pair.master.bodies != pair.slave.bodies),
-                                       Given("Master boundary ids",
-                                             pair.master.boundary_ids != pair.slave.boundary_ids ||
-                                                 pair.master.ids_of_body != pair.slave.ids_of_body),
-                                       Given("Master where", pair.master.where != pair.slave.where),
-                                       Given("Master surface", pair.has_rigid_master())})
+      RegionParameters  both   = pair.master; // of which the rigid bodies are master alone
+      for (const unsigned int body : master_alone(pair).bodies)
+        both.ids_of_body.erase(body);
+      const bool has_slaves = std::all_of(pair.slave.bodies.begin(),
+                                          pair.slave.bodies.end(),
+                                          [&](const unsigned int body) { return pair.master.has_body(body); });
+      for (const auto &[key, given] :
+           {Given("Master body", pair.master.bodies.empty() || !has_slaves),
+            Given("Master boundary ids",
+                  both.boundary_ids != pair.slave.boundary_ids || both.ids_of_body != pair.slave.ids_of_body),
+            Given("Master where", pair.master.where != pair.slave.where),
+            Given("Master surface", pair.has_rigid_master())})
         section.require(!given, key, remove);
       section.require(pair.contact_law == ContactPairParameters::ContactLaw::unilateral,
                       "Contact law",

@@ -308,7 +308,8 @@ namespace Nodus
                       pair.self_contact,
                       "Whether the slave faces touch each other [-], be they of one body or of several; then there is "
                       "no master. Without a Slave body that is general contact: of all bodies, and without ids of all "
-                      "outer faces. Of two faces that meet that one is slave which moves while the other is held, else "
+                      "outer faces. Rigid bodies with a mesh are master alone, and do not touch each other. Of two "
+                      "faces that meet that one is slave which moves while the other is held, else "
                       "the finer one, else that of the softer body, else of the one with the lower number. What is "
                       "slave and master of another "
                       "pair is left to that pair at all times, of two pairs with Self contact to the later one.");
