@@ -19,10 +19,11 @@ namespace Nodus
   /// Nodal values that the contact terms depend on, of the local surface nodes and slave nodes.
   struct ContactState
   {
-    std::vector<Point>   x;          ///< current positions of the surface nodes
+    std::vector<Point>   x;          ///< current positions of the surface nodes, of sections of bolts those of (R11)
     std::vector<Vector3> increment;  ///< their displacement since the start of the increment
     std::vector<Vector3> prescribed; ///< what the next correction must add at prescribed components, zero elsewhere
     std::vector<Point>   centre;     ///< of the driven rigid bodies
+    std::vector<Vector3> shortening; ///< of sections of bolts, among all that is driven
     std::vector<double>  lambda;     ///< per slave node [pressure]
     std::vector<std::array<double, 2>> Lambda; ///< per slave node, in its tangent frame
     /// As the increment began, per slave node, in space and in the scale of the slip (eq. F4) [length].

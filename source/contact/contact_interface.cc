@@ -35,9 +35,13 @@ namespace Nodus
   {
     std::vector<unsigned int> rigid_numbers(bodies.size(), dealii::numbers::invalid_unsigned_int);
     for (unsigned int i = 0; i < rigid_bodies.size(); ++i)
-      if (!rigid_bodies.is_face(i))
+      if (rigid_bodies.is_body(i))
         rigid_numbers[rigid_bodies.body(i)] = i;
     surfaces_.set_rigid_bodies(rigid_numbers, rigid_bodies.size());
+    std::vector<Vector3> axes;
+    for (unsigned int i = 0; i < rigid_bodies.size(); ++i)
+      axes.push_back(rigid_bodies.axis(i));
+    surfaces_.set_sections(rigid_bodies.sections(), axes);
     now_.tangents.assign(surfaces_.slave_nodes().size(), {});
     now_.elastic_slip.assign(surfaces_.slave_nodes().size(), Vector3());
     now_.area.assign(surfaces_.slave_nodes().size(), 0.);
@@ -59,8 +63,9 @@ namespace Nodus
   void ContactInterface::gather(const BlockVector &unknowns, const Vector &start)
   {
     std::vector<Vector3> u, u_start;
-    surfaces_.gather(unknowns.block(0), u);
-    surfaces_.gather(start, u_start);
+    state_.shortening = rigid_bodies_.shortenings();
+    surfaces_.gather(unknowns.block(0), state_.shortening, u);
+    surfaces_.gather(start, rigid_bodies_.shortenings(true), u_start);
     state_.x = surfaces_.positions(u);
     state_.centre.resize(rigid_bodies_.size());
     for (unsigned int b = 0; b < rigid_bodies_.size(); ++b)
@@ -93,7 +98,7 @@ namespace Nodus
   void ContactInterface::pair(BlockVector &unknowns, const Vector &start)
   {
     geometry_.reset(); // it refers to the faces
-    surfaces_.fetch_masters(unknowns.block(0));
+    surfaces_.fetch_masters(unknowns.block(0), rigid_bodies_.shortenings());
     gather(unknowns, start);
     freeze_geometry();
     hand_on(surfaces_, pairing_, status_, now_, state_);
@@ -108,8 +113,8 @@ namespace Nodus
   double ContactInterface::visible_part(const Vector &from, const Vector &to) const
   {
     std::vector<Vector3> before, now;
-    surfaces_.gather(from, before);
-    surfaces_.gather(to, now);
+    surfaces_.gather(from, rigid_bodies_.shortenings(), before); // tied, a section ends together
+    surfaces_.gather(to, rigid_bodies_.shortenings(), now);
     return Nodus::visible_part(pairs_, surfaces_, surfaces_.positions(before), surfaces_.positions(now));
   }
 

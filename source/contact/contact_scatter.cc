@@ -39,6 +39,16 @@ namespace Nodus
     shares_of_site_.assign(1, 0);
     for (unsigned int s = 0; s < surfaces_.n_sites(); ++s)
     {
+      if (const unsigned int section = surfaces_.section(surfaces_.pair(s));
+          section != dealii::numbers::invalid_unsigned_int)
+      {
+        RigidShare share{s, section, Vector3(), {}}; // no body of it is rigid
+        for (auto e = jump_.begin(s); e != jump_.middle(s); ++e)
+          share.jump[0] -= e->weight * surfaces_.axis(section);
+        shares_.push_back(share);
+        shares_of_site_.push_back(shares_.size());
+        continue;
+      }
       const auto  &n     = jump_.normal(s);
       unsigned int whole = jump_.middle(s) == jump_.end(s) ? dealii::numbers::invalid_unsigned_int
                                                            : surfaces_.rigid_body(jump_.middle(s)->node);
@@ -305,7 +315,7 @@ namespace Nodus
   void ContactScatter::add_turns(const ContactResidual &residual, LinearSystem &system) const
   {
     for (const RigidShare &share : shares_)
-      if (surfaces_.is_owned(share.site))
+      if (surfaces_.is_owned(share.site) && share.arm != Vector3())
         add_turn(surfaces_.layout(), share.body, share.arm, residual.jump[share.site], system.border);
   }
 } // namespace Nodus

@@ -60,7 +60,8 @@ namespace Nodus
     void add_turns(const ContactResidual &residual, LinearSystem &system) const;
 
   private:
-    /// Part of a driven rigid body in the jump of a site (eq. R4).
+    /// Part of a driven rigid body in the jump of a site (eq. R4), or that of the shortening of a bolt at a section
+    /// (eq. R11), which has neither arm nor turns.
     struct RigidShare
     {
       unsigned int                 site, body;

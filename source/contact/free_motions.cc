@@ -79,7 +79,7 @@ namespace Nodus
       centre_.push_back(ends.first + 0.5 * (ends.second - ends.first));
       size_.push_back(0.5 * ends.first.distance(ends.second));
     }
-    for (unsigned int i = 0; i < rigid_bodies.size() && !rigid_bodies.is_face(i); ++i)
+    for (unsigned int i = 0; i < rigid_bodies.size() && rigid_bodies.is_body(i); ++i)
       centre_[rigid_bodies.body(i)] = rigid_bodies.centre(i);
   }
 
@@ -114,8 +114,10 @@ namespace Nodus
     std::vector<bool> driven(bodies_.size(), false);
     for (unsigned int i = 0; i < rigid_bodies_.size(); ++i)
     {
+      if (rigid_bodies_.is_section(i)) // the pair holds
+        continue;
       const unsigned int body = rigid_bodies_.body(i);
-      driven[body]            = driven[body] || !rigid_bodies_.is_face(i);
+      driven[body]            = driven[body] || rigid_bodies_.is_body(i);
       for (unsigned int c = 0; c < RigidBodies::n_components && first_rank; ++c)
         if (!rigid_bodies_.is_free(i, c) && (c >= dim || rigid_bodies_.moves(i, c)))
         {

@@ -172,9 +172,10 @@ namespace Nodus
                  const Missing      &missing)
     {
       for (unsigned int j = 0; j < dim; ++j)
+      {
         if (surfaces_.fixed(column, j) && surfaces_.rigid_body(column) == none)
           missing(part * value[j] * state_.prescribed[column][j]);
-        else if (value[j] != 0.)
+        if (value[j] != 0.)
           surfaces_.for_each_unknown(column,
                                      j,
                                      state_.x[column],
@@ -184,6 +185,7 @@ namespace Nodus
                                        (is_inner(row) && is_inner(index) ? system_.variation : system_.border)
                                            .add(row, index, part * column_part * value[j]);
                                      });
+      }
     }
 
     const ContactSurfaces &surfaces_;

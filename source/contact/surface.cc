@@ -227,15 +227,6 @@ namespace Nodus
     return !pairs_[pair].slave.has_body(face.body);
   }
 
-  std::vector<SurfaceFace> ContactSurfaces::faces_that_are_master_alone(const unsigned int pair) const
-  {
-    std::vector<SurfaceFace> faces;
-    for (const SurfaceFace &face : master_faces_[pair])
-      if (is_master_alone(pair, face))
-        faces.push_back(face);
-    return faces;
-  }
-
   void ContactSurfaces::move_rigid_masters(const double begin, const double end)
   {
     for (auto &master : rigid_masters_)
@@ -250,20 +241,23 @@ namespace Nodus
         master->follow_carrier(positions);
   }
 
-  bool ContactSurfaces::fetch_masters(const Vector &u)
+  bool ContactSurfaces::fetch_masters(const Vector &u, const std::vector<Vector3> &shortenings)
   {
     if (dealii::Utilities::MPI::n_mpi_processes(communicator_) == 1 || n_pairs() == 0)
       return false;
     std::vector<Vector3> now, before;
-    gather(u, now);
-    gather(fetched_at_, before);
+    if (fetched_tightened_.empty())
+      fetched_tightened_.resize(shortenings.size());
+    gather(u, shortenings, now);
+    gather(fetched_at_, fetched_tightened_, before);
     double moves = 0.;
     for (unsigned int i = 0; i < nodes_.size(); ++i)
       moves = std::max(moves, (now[i] - before[i]).norm());
     moves = dealii::Utilities::MPI::max(moves, communicator_);
     if (moves <= relative_moves * *std::min_element(face_size_.begin(), face_size_.end()))
       return false;
-    fetched_at_ = u;
+    fetched_at_        = u;
+    fetched_tightened_ = shortenings;
     fetch(now);
     return true;
   }
@@ -339,6 +333,7 @@ namespace Nodus
       for (unsigned int c = 0; c < dim; ++c)
         held_.fixed[i][c] = nodal[i][c] > 0.5;
     find_rigid_nodes();
+    find_sections();
   }
 
   void ContactSurfaces::gather_walls()

@@ -182,34 +182,17 @@ namespace Nodus
       return master_faces_[pair];
     }
     /// Number of faces on all ranks.
-    unsigned int n_faces(const unsigned int pair, const SurfaceSide side) const
-    {
-      return directory_.size(pair, side);
-    }
+    unsigned int n_faces(unsigned int pair, SurfaceSide side) const;
     /// Index into slave_nodes() of a surface node on the slave side of a pair, or invalid_unsigned_int.
-    unsigned int slave_number(const unsigned int pair, const unsigned int node) const
-    {
-      if (node + 1 < sites_.first_of_node.size())
-        for (unsigned int k = sites_.first_of_node[node]; k < sites_.first_of_node[node + 1]; ++k)
-          if (sites_.nodes[k].pair == pair)
-            return k;
-      return dealii::numbers::invalid_unsigned_int;
-    }
+    unsigned int slave_number(unsigned int pair, unsigned int node) const;
     /// Whether an own slave node has multipliers of other pairs, too.
-    bool shares_node(const unsigned int slave) const
-    {
-      const unsigned int node = sites_.nodes[slave].node;
-      return sites_.first_of_node[node + 1] - sites_.first_of_node[node] > 1;
-    }
+    bool shares_node(unsigned int slave) const;
     /// Pairs whose slave surfaces meet are in different layers; 0, ..., in most models one for all.
     const std::vector<unsigned int> &layers() const
     {
       return sites_.layers;
     }
-    unsigned int n_layers() const
-    {
-      return sites_.layers.empty() ? 1 : 1 + *std::max_element(sites_.layers.begin(), sites_.layers.end());
-    }
+    unsigned int n_layers() const;
     /// Calls f(node, weight) for the free nodes that make up @p weight times the displacement of a node.
     template <typename Function>
     void expand(const unsigned int node, const double weight, const Function &f) const
@@ -221,11 +204,7 @@ namespace Nodus
           f(master, weight * part);
     }
     /// Active cell index of this rank's face @p number of a side.
-    unsigned int own_cell(const unsigned int pair, const SurfaceSide side, const unsigned int number) const
-    {
-      const auto &own = directory_.own(pair, side);
-      return own[number - own[0].number].cell;
-    }
+    unsigned int own_cell(unsigned int pair, SurfaceSide side, unsigned int number) const;
     /// Index into nodes() by the first degree of freedom; the node must be there.
     unsigned int node(const DoFIndex first_dof) const
     {
@@ -256,24 +235,27 @@ namespace Nodus
       return rigid_masters_[pair].get();
     }
     bool has_rigid_masters() const;
-    bool touches_itself(unsigned int pair) const; ///< the master side has all that the slave side has, ...
-    /// ... and faces of rigid bodies besides, which are master alone.
-    bool                     is_master_alone(unsigned int pair, const SurfaceFace &face) const;
+    bool touches_itself(unsigned int pair) const; ///< the master side has all that the slave side has, and rigid bodies
+    bool is_master_alone(unsigned int pair, const SurfaceFace &face) const; ///< of one of these, in such a pair
     std::vector<SurfaceFace> faces_that_are_master_alone(unsigned int pair) const;
     /// Moves them to where they are at the end of an increment, or, those that a body of the model carries, to where
     /// the nodes are: @p positions of all nodes. @throws InputError on every rank
     void move_rigid_masters(double begin, double end);
     void place_carried_masters(const std::vector<Point> &positions);
 
-    /// Fetches the master faces near this rank's slave faces at displacement @p u, unless no surface node has moved
-    /// much since the last time; returns whether nodes() and master_faces() have changed. Collective.
-    bool fetch_masters(const Vector &u);
+    /// Fetches the master faces near this rank's slave faces at displacement @p u and these shortenings of bolts,
+    /// unless no surface node has moved much since the last time; returns whether nodes() and master_faces() have
+    /// changed. Collective.
+    bool fetch_masters(const Vector &u, const std::vector<Vector3> &shortenings);
 
     /// Values of a displacement-like vector (fully distributed) at all local nodes. Collective.
     void gather(const Vector &v, std::vector<Vector3> &nodal_values) const
     {
       gather_.gather(v, nodal_values);
     }
+    /// The same of a displacement, with the slave sides of bolts' sections where they would be had the bolts not been
+    /// shortened there (eq. R11), by RigidBodies::shortenings(). Collective.
+    void gather(const Vector &u, const std::vector<Vector3> &shortenings, std::vector<Vector3> &displacements) const;
     /// Adds what all ranks have for their local nodes to such a vector. Collective.
     void add(const std::vector<Vector3> &nodal_values, Vector &v) const
     {
@@ -299,9 +281,25 @@ namespace Nodus
     {
       return held_.rigid_body.empty() ? dealii::numbers::invalid_unsigned_int : held_.rigid_body[node];
     }
+    /// The sections of bolts among all that is driven: by pair, or invalid, and their axes.
+    void set_sections(const std::vector<unsigned int> &of_pairs, const std::vector<Vector3> &axes);
+    /// Number of the section that a pair is, or invalid_unsigned_int, and its axis.
+    unsigned int section(const unsigned int pair) const
+    {
+      return held_.section_of_pair.empty() ? dealii::numbers::invalid_unsigned_int : held_.section_of_pair[pair];
+    }
+    const Vector3 &axis(const unsigned int section) const
+    {
+      return held_.axes[section];
+    }
+    /// Number of the section that a node is on the slave side of, or invalid_unsigned_int.
+    unsigned int section_of_node(const unsigned int node) const
+    {
+      return held_.section.empty() ? dealii::numbers::invalid_unsigned_int : held_.section[node];
+    }
     /// Calls f(flat index, weight) for the unknowns that move component @p c of a node: its own displacement, where
     /// that is free, or translation and spin of its rigid body, @p x being where the node is and @p centre those of the
-    /// bodies.
+    /// bodies; and the shortening of its section.
     template <typename Function>
     void for_each_unknown(const unsigned int        node,
                           const unsigned int        c,
@@ -313,6 +311,8 @@ namespace Nodus
         f(nodes_[node].dofs[c], 1.);
       else if (const unsigned int body = rigid_body(node); body != dealii::numbers::invalid_unsigned_int)
         for_each_rigid_unknown(body, c, 1., Vector3(x - centre[body]), f);
+      if (const unsigned int section = section_of_node(node); section != dealii::numbers::invalid_unsigned_int)
+        f(layout_.rigid(section, 0), -held_.axes[section][c]);
     }
     /// The same for what moves like component @p c of @p weight T + omega x @p arm.
     template <typename Function>
@@ -348,6 +348,7 @@ namespace Nodus
     void        gather_fixed();
     void        gather_walls();
     void        find_rigid_nodes();
+    void        find_sections();
 
     /// The places with a jump, a frame and statuses, and what carries multipliers.
     struct Sites
@@ -367,8 +368,10 @@ namespace Nodus
     {
       Vector                             mask; ///< 1 at prescribed degrees of freedom
       std::vector<std::array<bool, dim>> fixed;
-      std::vector<unsigned int>          rigid_number; ///< by body
-      std::vector<unsigned int>          rigid_body;   ///< by node, empty without any
+      std::vector<unsigned int>          rigid_number;             ///< by body
+      std::vector<unsigned int>          rigid_body;               ///< by node, empty without any
+      std::vector<unsigned int>          section_of_pair, section; ///< likewise, the second by node
+      std::vector<Vector3>               axes;                     ///< of all that is driven
     };
 
     const std::vector<ContactPairParameters>  &pairs_;
@@ -382,8 +385,9 @@ namespace Nodus
     std::vector<std::vector<SurfaceFace>>      slave_faces_, master_faces_;
     std::vector<std::unique_ptr<RigidSurface>> rigid_masters_; ///< of each pair, or nullptr
     std::vector<double>                        face_size_, master_face_size_;
-    Vector                                     fetched_at_; ///< displacement
-    Vector                                     walls_;      ///< empty, or wall_thickness()
+    Vector                                     fetched_at_;        ///< displacement
+    std::vector<Vector3>                       fetched_tightened_; ///< shortenings then, empty: none
+    Vector                                     walls_;             ///< empty, or wall_thickness()
     Held                                       held_;
     BlockLayout                                layout_;
     SurfaceGather                              gather_;

@@ -81,6 +81,38 @@ namespace Nodus
       slave_faces_[record.pair].push_back(make_face(record));
   }
 
+  unsigned int ContactSurfaces::slave_number(const unsigned int pair, const unsigned int node) const
+  {
+    if (node + 1 < sites_.first_of_node.size())
+      for (unsigned int k = sites_.first_of_node[node]; k < sites_.first_of_node[node + 1]; ++k)
+        if (sites_.nodes[k].pair == pair)
+          return k;
+    return dealii::numbers::invalid_unsigned_int;
+  }
+
+  bool ContactSurfaces::shares_node(const unsigned int slave) const
+  {
+    const unsigned int node = sites_.nodes[slave].node;
+    return sites_.first_of_node[node + 1] - sites_.first_of_node[node] > 1;
+  }
+
+  unsigned int ContactSurfaces::n_faces(const unsigned int pair, const SurfaceSide side) const
+  {
+    return directory_.size(pair, side);
+  }
+
+  unsigned int
+  ContactSurfaces::own_cell(const unsigned int pair, const SurfaceSide side, const unsigned int number) const
+  {
+    const auto &own = directory_.own(pair, side);
+    return own[number - own[0].number].cell;
+  }
+
+  unsigned int ContactSurfaces::n_layers() const
+  {
+    return sites_.layers.empty() ? 1 : 1 + *std::max_element(sites_.layers.begin(), sites_.layers.end());
+  }
+
   /// The first layer for each pair that no earlier pair that it meets has.
   void ContactSurfaces::find_layers()
   {
@@ -222,6 +254,43 @@ namespace Nodus
         master_face_size_[p] = face_size_[p];
   }
 
+  void ContactSurfaces::gather(const Vector               &u,
+                               const std::vector<Vector3> &shortenings,
+                               std::vector<Vector3>       &displacements) const
+  {
+    gather(u, displacements);
+    for (unsigned int n = 0; n < held_.section.size(); ++n)
+      if (held_.section[n] != dealii::numbers::invalid_unsigned_int)
+        displacements[n] -= shortenings[held_.section[n]];
+  }
+
+  void ContactSurfaces::set_sections(const std::vector<unsigned int> &of_pairs, const std::vector<Vector3> &axes)
+  {
+    held_.section_of_pair = of_pairs;
+    held_.axes            = axes;
+    find_sections();
+  }
+
+  /// The nodes of their slave sides, hanging ones and those that these follow included.
+  void ContactSurfaces::find_sections()
+  {
+    held_.section.clear();
+    for (unsigned int p = 0; p < held_.section_of_pair.size(); ++p)
+    {
+      if (held_.section_of_pair[p] == dealii::numbers::invalid_unsigned_int)
+        continue;
+      held_.section.resize(nodes_.size(), dealii::numbers::invalid_unsigned_int);
+      for (const SurfaceFace &face : slave_faces_[p])
+        for (const unsigned int node : face.nodes)
+        {
+          held_.section[node] = held_.section_of_pair[p];
+          expand(node,
+                 1.,
+                 [&](const unsigned int free_node, double) { held_.section[free_node] = held_.section_of_pair[p]; });
+        }
+    }
+  }
+
   /// Message for a face of this rank that is slave in two pairs, or nothing.
   std::string ContactSurfaces::repeated_slave_face() const
   {
@@ -297,5 +366,14 @@ namespace Nodus
                  ": a face is both slave and master; give the two sides different boundary ids or bodies";
       }
     return "";
+  }
+
+  std::vector<SurfaceFace> ContactSurfaces::faces_that_are_master_alone(const unsigned int pair) const
+  {
+    std::vector<SurfaceFace> faces;
+    for (const SurfaceFace &face : master_faces_[pair])
+      if (is_master_alone(pair, face))
+        faces.push_back(face);
+    return faces;
   }
 } // namespace Nodus

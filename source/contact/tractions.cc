@@ -153,6 +153,8 @@ namespace Nodus
       const Point     &X     = surfaces.nodes()[slave.node].X;
       fields.X.push_back(X);
       fields.displacement.push_back(state.x[slave.node] - X);
+      if (const unsigned int section = surfaces.section(slave.pair); section != dealii::numbers::invalid_unsigned_int)
+        fields.displacement.back() += state.shortening[section];
       fields.pressure.push_back(result.pressure);
       fields.multiplier.push_back(state.lambda[k]);
       fields.gap.push_back(result.gap);

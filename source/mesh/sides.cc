@@ -111,6 +111,33 @@ namespace Nodus
     return sides;
   }
 
+  Vector3
+  mean_normal(const Region &region, const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping)
+  {
+    const auto               &fe = dof_handler.get_fe();
+    dealii::FEFaceValues<dim> values(
+        mapping, fe, dealii::QGauss<dim - 1>(fe.degree + 1), dealii::update_JxW_values | dealii::update_normal_vectors);
+    Vector3 normal;
+    double  area = 0.;
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (const unsigned int f : cell->face_indices())
+          if (cell->at_boundary(f) && region.selects_face(mapping, cell, f))
+          {
+            values.reinit(cell, f);
+            for (const auto q : values.quadrature_point_indices())
+            {
+              area += values.JxW(q);
+              normal += values.JxW(q) * values.normal_vector(q);
+            }
+          }
+    const MPI_Comm communicator = communicator_of(dof_handler);
+    area                        = dealii::Utilities::MPI::sum(area, communicator);
+    for (unsigned int c = 0; c < dim; ++c)
+      normal[c] = dealii::Utilities::MPI::sum(normal[c], communicator) / area;
+    return normal;
+  }
+
   bool is_one_face_wide(const Region                  &region,
                         const dealii::DoFHandler<dim> &dof_handler,
                         const dealii::Mapping<dim>    &mapping)

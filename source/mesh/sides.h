@@ -35,6 +35,11 @@ namespace Nodus
   std::vector<std::map<dealii::types::boundary_id, Side>>
   sides_of(const Bodies &bodies, const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping);
 
+  /// Mean outward normal of the faces that the region selects, weighted with their areas: of length 1 where they are
+  /// flat. Collective.
+  Vector3
+  mean_normal(const Region &region, const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping);
+
   /// Whether all vertices of the faces that the region selects lie on the rim of that surface, or there is none: it is
   /// one face wide. Collective.
   bool is_one_face_wide(const Region                  &region,

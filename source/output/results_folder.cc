@@ -17,9 +17,9 @@ namespace Nodus
   namespace
   {
     /// Fields, tables and profile as their writers name them; Diagnosis removes its own files.
-    const std::regex results(
-        "(bodies|contact)(_[0-9]+([.][0-9]+)?[.]p?vtu|[.]pvd)|"
-        "(contact|masters|reactions|rigid_bodies|points|lines|energy|convergence)[.]csv|(profile|status)[.]json");
+    const std::regex results("(bodies|contact)(_[0-9]+([.][0-9]+)?[.]p?vtu|[.]pvd)|"
+                             "(contact|masters|reactions|rigid_bodies|preload|points|lines|energy|convergence)[.]csv|("
+                             "profile|status)[.]json");
   } // namespace
 
   ResultsFolder::ResultsFolder(const std::string &path, const MPI_Comm communicator)

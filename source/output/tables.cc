@@ -36,6 +36,9 @@ namespace Nodus
                                        "rotation z [degrees],force x [force],force y [force],force z [force],"
                                        "moment x [force length],moment y [force length],moment z [force length]\n";
 
+    constexpr auto preload_header = "increment,time,pair,force [force],shortening [length],shear force x [force],"
+                                    "shear force y [force],shear force z [force],locked\n";
+
     constexpr auto energy_header = "increment,time,external work [energy],released work [energy],contact work [energy],"
                                    "stored energy [energy],frictional dissipation [energy],"
                                    "plastic dissipation [energy],stabilisation [energy],imbalance [energy]\n";
@@ -94,7 +97,7 @@ namespace Nodus
       : folder_(folder)
       , communicator_(communicator)
       , bodies_(bodies)
-      , rows_{contact_header, reaction_header, energy_header, iteration_header, "", "", "", ""}
+      , rows_{contact_header, reaction_header, energy_header, iteration_header, "", "", "", "", ""}
   {
     for (const char *name : remedy_names)
       rows_.contact += ',' + std::string(name);
@@ -108,6 +111,7 @@ namespace Nodus
                    const std::vector<ContactResultants> &contact,
                    const std::vector<Reaction>          &reactions,
                    const std::vector<RigidBodyMotion>   &rigid_bodies,
+                   const std::vector<PreloadSection>    &preloads,
                    const Energies                       &energies,
                    const IterationCounts                &counts,
                    const Verdict                        &verdict)
@@ -163,6 +167,16 @@ namespace Nodus
     }
     add_optional(rigid_body_header, rigid_rows.str(), rows_.rigid_bodies);
 
+    auto preload_rows = row();
+    for (const PreloadSection &section : preloads)
+    {
+      preload_rows << increment << ',' << t << ',' << quoted(section.name) << ',' << section.force << ','
+                   << section.shortening;
+      print(preload_rows, section.shear);
+      preload_rows << ',' << section.locked << '\n';
+    }
+    add_optional(preload_header, preload_rows.str(), rows_.preloads);
+
     auto         energy_row = row();
     const double imbalance  = energies.imbalance();
     energy_row << increment << ',' << t << ',' << energies.external << ',' << energies.released << ','
@@ -208,6 +222,7 @@ namespace Nodus
                                      {"masters.csv", &rows_.masters},
                                      {"reactions.csv", &rows_.reactions},
                                      {"rigid_bodies.csv", &rows_.rigid_bodies},
+                                     {"preload.csv", &rows_.preloads},
                                      {"points.csv", &rows_.points},
                                      {"lines.csv", &rows_.lines},
                                      {"energy.csv", &rows_.energies},

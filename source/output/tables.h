@@ -51,6 +51,7 @@ namespace Nodus
              const std::vector<ContactResultants> &contact,
              const std::vector<Reaction>          &reactions,
              const std::vector<RigidBodyMotion>   &rigid_bodies,
+             const std::vector<PreloadSection>    &preloads,
              const Energies                       &energies,
              const IterationCounts                &counts,
              const Verdict                        &verdict);
@@ -76,6 +77,7 @@ namespace Nodus
     {
       std::string contact, reactions, energies, iterations; ///< with the headers
       std::string masters, rigid_bodies, points, lines;     ///< likewise, empty without any
+      std::string preloads;
     };
     const Rows &rows() const
     {

@@ -157,6 +157,10 @@ namespace Nodus
             "Friction factor",
             "depends on the time, which arc length is to find; take t out of it, or set 'Load stepping/Control "
             "= time'");
+        pair.require(!parameters.is_section(),
+                     "Preload",
+                     "is a force at given times, until a given time, which arc length cannot find; set 'Load stepping/"
+                     "Control = time'");
         const auto first =
             std::upper_bound(load.interval_ends.begin(), load.interval_ends.end(), parameters.active_from);
         pair.require(parameters.start.overclosure != Overclosure::interference ||
@@ -165,6 +169,19 @@ namespace Nodus
                      "is pressed out in the course of the first interval that the pair acts in, which must have 'Load "
                      "stepping/Control = time': put one before, 'Control = time, arc length'");
       }
+    }
+
+    /// What a preload has to do with the load path and the loops.
+    void check_preload(const Section &section, const ContactPairParameters &pair, const Parameters &p)
+    {
+      const std::vector<double> &ends = p.load_stepping.interval_ends;
+      section.require(pair.preload.until == 0. || std::count(ends.begin(), ends.end(), pair.preload.until) > 0,
+                      "Preload until",
+                      "must be 0 or one of the times in Load stepping / Interval ends; add it there");
+      section.require(!pair.is_section() || p.geometry_loop.mode != LoopParameters::Mode::once,
+                      "Preload",
+                      "moves the two faces past each other, which 'Geometry loop/Mode = once' does not follow; remove "
+                      "that");
     }
 
     /// @p level: of the finest cells of any body before.
@@ -255,6 +272,9 @@ namespace Nodus
       section.require(!some(pair.slave, rigid) || !(pair.has_rigid_master() || some(pair.master, rigid)),
                       "Slave body",
                       "is rigid, as is the master: neither can give way; remove the pair");
+      section.require(!pair.is_section() || !(some(pair.slave, rigid) || some(pair.master, rigid)),
+                      "Preload",
+                      "is given, but a body of the pair is rigid; put the cut through a part of the bolt that deforms");
     }
   } // namespace
 
@@ -289,6 +309,7 @@ namespace Nodus
       ParameterChecks::check(section, contact_pairs[i], "pair", load_stepping.interval_ends);
       const ContactPairParameters &pair = contact_pairs[i];
       check_bodies(section, pair, bodies);
+      check_preload(section, pair, *this);
       for (unsigned int j = 0; j < i; ++j)
         section.require(pair.self_contact || contact_pairs[j].self_contact ||
                             !share_faces(contact_pairs[i].slave, contact_pairs[j].slave),

@@ -328,6 +328,27 @@ namespace Nodus
                       "is " + std::to_string(n) + "; consistent weights with 'Degree = " + std::to_string(degree) +
                           "' take " + std::to_string(degree + 1) + " or more");
     }
+
+    void check_preload(const Section &section, const ContactPairParameters &pair)
+    {
+      for (const auto &[key, given] :
+           {Given("Preload until", pair.preload.until != 0.), Given("Preload axis", pair.preload.axis != Vector3())})
+        section.require(pair.is_section() || !given, key, "has no effect without a Preload; give that, or remove it");
+      if (!pair.is_section())
+        return;
+      check_expression(section, "Preload", pair.preload.force, "t");
+      section.require(pair.contact_law == ContactPairParameters::ContactLaw::tied,
+                      "Preload",
+                      "tightens a bolt whose two faces hold together; set 'Contact law = tied', or press a surface "
+                      "with a boundary condition of 'Type = traction'");
+      section.require(!pair.has_rigid_master(),
+                      "Preload",
+                      "needs the two faces of a cut through a bolt, not a Master surface; cut the mesh of the bolt in "
+                      "two, and name the faces of both sides");
+      section.require(pair.preload.until == 0. || pair.preload.until > pair.active_from,
+                      "Preload until",
+                      "is not after Active from; the bolt would never be tightened");
+    }
   } // namespace
 
   void ParameterChecks::check(const Section               &section,
@@ -357,5 +378,6 @@ namespace Nodus
                     "Weights",
                     "is a choice of 'Scheme = nodal' alone; the other schemes bring their own weights: remove the key");
     check_rule(section, pair, degree);
+    check_preload(section, pair);
   }
 } // namespace Nodus

@@ -121,6 +121,27 @@ namespace Nodus
                         "[pressure].",
                         numbers);
     }
+
+    /// What tightens a bolt.
+    void add_preload(ParameterHandler &prm, ContactPairParameters::Preload &preload)
+    {
+      prm.add_parameter("Preload",
+                        preload.force,
+                        "Of a tied pair whose sides are the two faces of a cut through a bolt: force in the bolt "
+                        "[force], tension positive, an expression of the time t [-], e.g. 1e4*min(t,1). The faces move "
+                        "past each other along the axis, by as much as equilibrium needs, and stay tied otherwise. "
+                        "Empty: the pair is no such section.",
+                        Patterns::Anything());
+      prm.add_parameter("Preload until",
+                        preload.until,
+                        "Time until which that force acts [-]: one of the Interval ends; 0: all the time. From then on "
+                        "the bolt keeps the length that it has been tightened to, and its force follows the loads.",
+                        not_negative);
+      prm.add_parameter("Preload axis",
+                        preload.axis,
+                        "Axis of the bolt in the reference configuration, in either direction [-]; three numbers. "
+                        "Zero: the mean normal of the slave faces.");
+    }
   } // namespace
 
   namespace ParameterKeys
@@ -129,6 +150,7 @@ namespace Nodus
     {
       add_laws(prm, pair);
       add_pressure_gap(prm, pair.pressure_gap);
+      add_preload(prm, pair.preload);
     }
   } // namespace ParameterKeys
 } // namespace Nodus

@@ -31,10 +31,14 @@ namespace Nodus
 
   RigidBodies::RigidBodies(const std::vector<BodyParameters>              &parameters,
                            const std::vector<BoundaryConditionParameters> &conditions,
+                           const std::vector<ContactPairParameters>       &pairs,
                            const Bodies                                   &bodies,
-                           std::vector<State>                             &now)
+                           std::vector<State>                             &now,
+                           std::vector<State>                             &begin)
       : all_(bodies)
       , now_(now)
+      , begin_(begin)
+      , n_pairs_(pairs.size())
   {
     for (unsigned int b = 0; b < parameters.size(); ++b)
     {
@@ -66,7 +70,21 @@ namespace Nodus
         face.moves[c] = true;
       add(std::move(face), condition.motion, condition.free, condition.force, condition.moment);
     }
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+    {
+      if (!pairs[p].is_section())
+        continue;
+      const std::string number = std::to_string(p + 1);
+      Body              section;
+      section.number  = pairs[p].slave.first_body() - 1;
+      section.name    = pairs[p].name.empty() ? "pair " + number : pairs[p].name;
+      section.label   = "Contact pair " + number + (pairs[p].name.empty() ? "" : " ('" + pairs[p].name + "')");
+      section.section = &pairs[p];
+      section.pair    = p;
+      add(std::move(section), {}, {0}, {pairs[p].preload.force, "0", "0"}, {"0", "0", "0"});
+    }
     now_.assign(bodies_.size(), State());
+    begin = now_;
   }
 
   void RigidBodies::add(Body                              body,
@@ -94,6 +112,11 @@ namespace Nodus
     bodies_.push_back(std::move(body));
   }
 
+  bool RigidBodies::has_faces() const
+  {
+    return std::any_of(bodies_.begin(), bodies_.end(), [](const Body &body) { return body.face != nullptr; });
+  }
+
   std::string RigidBodies::title(const unsigned int i) const
   {
     std::string text = bodies_[i].label;
@@ -116,6 +139,11 @@ namespace Nodus
     }
     for (Body &body : bodies_)
     {
+      if (body.section)
+      {
+        find_axis(body, dof_handler, mapping);
+        continue;
+      }
       const auto region = body.face ? std::make_unique<Region>(body.face->region, all_, body.label) : nullptr;
       std::map<DoFIndex, Point> found;
       const auto                take = [&](const auto &cell, const unsigned int node)
@@ -186,12 +214,18 @@ namespace Nodus
       Body &body = bodies_[i];
       for (unsigned int c = 0; c < n_components; ++c)
       {
+        if (body.section)
+          body.free[c] = c == 0 && body.section->is_tightened(t);
         body.load[c] = body.free[c] ? body.loads->value(dealii::Point<1>(t), c) : 0.;
         if (!std::isfinite(body.load[c]))
         {
           std::ostringstream message;
-          message << body.label << ": " << (c < dim ? "force " : "moment ") << "xyz"[c % dim] << " at t = " << t
-                  << " is not a number; correct the expression";
+          message << body.label << ": ";
+          if (body.section)
+            message << "the preload";
+          else
+            message << (c < dim ? "force " : "moment ") << "xyz"[c % dim];
+          message << " at t = " << t << " is not a number; correct the expression";
           throw InputError(message.str());
         }
       }
@@ -205,7 +239,7 @@ namespace Nodus
     const Body   &body = bodies_[i];
     const Vector3 turn = body.prescribed_rotation - now_[i].prescribed_rotation;
     Components    missing{};
-    for (unsigned int c = 0; c < dim; ++c)
+    for (unsigned int c = 0; c < dim && !body.section; ++c) // a section that is locked stays where it is
     {
       if (!body.free[c])
         missing[c] = body.prescribed_translation[c] - now_[i].translation[c];

@@ -21,7 +21,8 @@ namespace Nodus
   /// components about global axes, translation of its centre and rotation about it: x = c + T + R (X - c).
   ///
   /// Behind them stand the coupled faces of deformable bodies: the nodes of each move as those of a rigid body, in some
-  /// components or all.
+  /// components or all. Behind those the preloaded sections of bolts, each of which has the first component alone: by
+  /// how much the bolt is shortened there, along an axis of its own. The axial force drives it, or it is locked.
   ///
   /// The unknowns of an increment are T and the rotation vector theta of the increment, R = exp(theta) R_begin; those
   /// that are not free follow the prescribed motion, theta the increment of its rotation vector. Every rank holds all
@@ -35,7 +36,7 @@ namespace Nodus
     /// Motion of a body: what is left of the past, and the unknowns of the increment.
     struct State
     {
-      Vector3                translation; ///< of the centre, now
+      Vector3                translation; ///< of the centre, now; of a section the first component is its shortening
       Vector3                turn;        ///< theta, rotation vector since the increment began
       dealii::Tensor<2, dim> rotation = dealii::unit_symmetric_tensor<dim>(); ///< R_begin
       Vector3                prescribed_rotation; ///< rotation vector of the prescribed motion as the increment begins
@@ -52,27 +53,48 @@ namespace Nodus
       }
     };
 
-    /// @p now, one for each driven body, outlives the object, and is what it moves; it is set to that at rest.
-    /// @throws InputError on every rank where an expression does not parse.
+    /// @p now, one for each driven body, and @p begin, as the increment began, outlive the object, which moves the
+    /// first ones; they are set to those at rest. @throws InputError on every rank where an expression does not parse.
     RigidBodies(const std::vector<BodyParameters>              &parameters,
                 const std::vector<BoundaryConditionParameters> &conditions,
+                const std::vector<ContactPairParameters>       &pairs,
                 const Bodies                                   &bodies,
-                std::vector<State>                             &now);
+                std::vector<State>                             &now,
+                std::vector<State>                             &begin);
 
     unsigned int size() const
     {
       return bodies_.size();
     }
-    /// Whether it is a coupled face.
+    /// Whether it is a rigid body, a coupled face, or the section of a bolt.
+    bool is_body(const unsigned int i) const
+    {
+      return !is_face(i) && !is_section(i);
+    }
     bool is_face(const unsigned int i) const
     {
       return bodies_[i].face != nullptr;
     }
-    bool has_faces() const
+    bool is_section(const unsigned int i) const
     {
-      return !bodies_.empty() && bodies_.back().face;
+      return bodies_[i].section != nullptr;
     }
-    /// Index of a driven one, or of the body that a face belongs to, among all bodies.
+    bool has_faces() const;
+    /// Number, from 0, of the contact pair that a section is; and of each pair which of these it is, or an invalid
+    /// number.
+    unsigned int pair(const unsigned int i) const
+    {
+      return bodies_[i].pair;
+    }
+    std::vector<unsigned int> sections() const;
+    /// Out of the slave side of a section, of length 1; zero for the others.
+    const Vector3 &axis(const unsigned int i) const
+    {
+      return bodies_[i].axis;
+    }
+    /// By how much of its axis a section is shortened, of all that is driven; zero for the others [length].
+    std::vector<Vector3> shortenings(bool as_the_increment_began = false) const;
+    /// Index of a driven one, or of the body that a face or section belongs to, among all bodies.
     unsigned int body(const unsigned int i) const
     {
       return bodies_[i].number;
@@ -115,7 +137,8 @@ namespace Nodus
     Vector3 arm(unsigned int i, const Node &node) const;
     /// Adds to six @p sums, force and moment, what a force at a node, @p arm away from the centre, does to it.
     void add_force(unsigned int i, const Vector3 &arm, const Vector3 &force, double *sums) const;
-    /// Once the mesh is new.
+    /// Once the mesh is new; the axes of sections are those of the first one. @throws InputError on every rank where a
+    /// section has none.
     void find_nodes(const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping);
 
     /// Loads and prescribed components are those of time @p t from here. @throws InputError on every rank
@@ -167,7 +190,10 @@ namespace Nodus
     {
       unsigned int                                     number;
       std::string                                      name, label;
-      const BoundaryConditionParameters               *face = nullptr; ///< null: the whole body
+      const BoundaryConditionParameters               *face    = nullptr; ///< null: the whole body, or a section
+      const ContactPairParameters                     *section = nullptr;
+      unsigned int                                     pair    = 0; ///< number of that, from 0
+      Vector3                                          axis;        ///< of the section
       std::array<bool, n_components>                   free{};
       std::array<bool, dim>                            moves{{true, true, true}};
       double                                           extent;
@@ -184,12 +210,15 @@ namespace Nodus
              const std::vector<unsigned int>  &free,
              std::vector<std::string>          force,
              const std::vector<std::string>   &moment);
+    void find_axis(Body &section, const dealii::DoFHandler<dim> &dof_handler, const dealii::Mapping<dim> &mapping);
     /// Where it is: R of x = c + T + R (X - c).
     dealii::Tensor<2, dim> turned(unsigned int i) const;
 
     const Bodies                     &all_;
     std::vector<Body>                 bodies_;
     std::vector<State>               &now_;
+    const std::vector<State>         &begin_;
+    const unsigned int                n_pairs_;
     dealii::AffineConstraints<double> hanging_; ///< where there are coupled faces: their neighbours follow
   };
 } // namespace Nodus

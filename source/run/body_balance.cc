@@ -65,11 +65,15 @@ namespace Nodus
     return worst;
   }
 
-  double rigid_body_imbalance(const Model &model, const Vector &forces, const double scale)
+  double
+  rigid_body_imbalance(const Model &model, const Vector &forces, const ContactResidual &contact, const double scale)
   {
     constexpr unsigned int n      = RigidBodies::n_components;
     const RigidBodies     &bodies = model.rigid_bodies;
     std::vector<double>    sums(n * bodies.size(), 0.);
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+      if (bodies.is_section(b))
+        std::copy_n(contact.rigid.begin() + n * b, n, sums.begin() + n * b);
     for (unsigned int b = 0; b < bodies.size(); ++b)
       for (const RigidBodies::Node &node : bodies.nodes(b))
         bodies.add_force(b,

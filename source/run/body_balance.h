@@ -17,9 +17,9 @@ namespace Nodus
                                   const Vector     &acting,
                                   double            scale);
 
-  /// What the @p forces at the nodes of driven rigid bodies and coupled faces leave to their loads at components that
-  /// are free; relative likewise. Collective.
-  double rigid_body_imbalance(const Model &model, const Vector &forces, double scale);
+  /// What the @p forces at the nodes of driven rigid bodies and coupled faces, and the forces of @p contact in the
+  /// sections of bolts, leave to their loads at components that are free; relative likewise. Collective.
+  double rigid_body_imbalance(const Model &model, const Vector &forces, const ContactResidual &contact, double scale);
 } // namespace Nodus
 
 #endif

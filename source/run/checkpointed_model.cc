@@ -43,9 +43,12 @@ namespace Nodus
         const std::string section = section_of(entry->first), name = entry->first.substr(entry->first.rfind('/') + 1);
         const bool        lies_ahead =
             ahead.count(section) > 0 && (section.compare(0, 7, "Contact") != 0 || !makes_sites(name));
-        const bool goes_on =
-            name == "Active until" && (std::stod(entry->second) == 0. || std::stod(entry->second) >= present);
-        entry = lies_ahead || goes_on ? model.erase(entry) : std::next(entry);
+        const bool goes_on = (name == "Active until" || name == "Preload until") &&
+                             (std::stod(entry->second) == 0. || std::stod(entry->second) >= present);
+        if (lies_ahead && name == "Preload" && !entry->second.empty())
+          entry++->second = "given"; // the state has its shortening from the start on
+        else
+          entry = lies_ahead || goes_on ? model.erase(entry) : std::next(entry);
       }
       return model;
     }

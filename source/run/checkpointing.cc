@@ -37,7 +37,7 @@ namespace Nodus
       {
         archive &model &path &state &series;
         archive &rows.contact &rows.reactions &rows.energies &rows.iterations &rows.masters &rows.rigid_bodies &rows
-            .points &rows.lines;
+            .points &rows.lines &rows.preloads;
       }
     };
 

@@ -293,6 +293,11 @@ namespace Nodus
     return implementation_->results.rigid_motions();
   }
 
+  const std::vector<PreloadSection> &ContactProblem::preload_sections() const
+  {
+    return implementation_->results.preloads();
+  }
+
   const IterationCounts &ContactProblem::iterations() const
   {
     return implementation_->journal.counts;

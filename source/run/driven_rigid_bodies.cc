@@ -96,7 +96,7 @@ namespace Nodus
   {
     const RigidBodies     &rigid_bodies = model_.rigid_bodies;
     const ContactSurfaces &surfaces     = model_.contact->surfaces();
-    for (unsigned int b = 0; b < rigid_bodies.size() && !rigid_bodies.is_face(b); ++b)
+    for (unsigned int b = 0; b < rigid_bodies.size() && rigid_bodies.is_body(b); ++b)
       for (const RigidBodies::Node &node : rigid_bodies.nodes(b))
       {
         const double k = model_.stabilisation->resistance(surfaces.layout().owned[0].index_within_set(node.dof));
@@ -315,6 +315,11 @@ namespace Nodus
       if (part[0].norm() + part[1].norm() == 0.)
         continue;
       text += (text.empty() ? "" : ", together with ") + rigid_bodies.title(b);
+      if (rigid_bodies.is_section(b))
+      {
+        text += " changes its length";
+        continue;
+      }
       if (part[0].norm() > 0.)
         text += " moves along " + text_of(part[0] / part[0].norm());
       if (part[1].norm() > 0.)

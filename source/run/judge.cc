@@ -253,7 +253,7 @@ namespace Nodus
     Vector missing(internal);
     missing -= external;
     missing += contact;
-    const double rigid = rigid_body_imbalance(model_, missing, scale);
+    const double rigid = rigid_body_imbalance(model_, missing, contact_->residual(), scale);
     for (const auto i : contact_->surfaces().layout().owned[0])
       if (constraints.is_constrained(i))
         missing(i) = 0.;

@@ -136,7 +136,7 @@ namespace Nodus
     for (unsigned int cycle = 0; cycle < adaptivity.initial_cycles && !distance.empty(); ++cycle)
     {
       ContactSurfaces &surfaces = model_.contact->surfaces();
-      surfaces.fetch_masters(states_.now.unknowns.block(0));
+      surfaces.fetch_masters(states_.now.unknowns.block(0), model_.rigid_bodies.shortenings());
       const std::vector<Point> X = surfaces.reference_positions();
       surfaces.place_carried_masters(X);
       RefinementIndicator indicator(model_.bodies.triangulation());

@@ -84,7 +84,12 @@ namespace Nodus
       , fe(dealii::FE_Q<dim>(parameters.degree), dim)
       , dof_handler(bodies.triangulation())
       , materials(make_materials(parameters.bodies))
-      , rigid_bodies(parameters.bodies, parameters.boundary_conditions, bodies, states.now.rigid)
+      , rigid_bodies(parameters.bodies,
+                     parameters.boundary_conditions,
+                     parameters.contact_pairs,
+                     bodies,
+                     states.now.rigid,
+                     states.committed.rigid)
   {
     if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 && !parameters.contact_pairs.empty())
       balance_contact(parameters.contact_pairs, *mapping, bodies);
@@ -120,6 +125,7 @@ namespace Nodus
                                                  now.contact);
     contact->surfaces().set_fixed(boundary_conditions->homogeneous_constraints());
     refuse_coupled_contact();
+    refuse_shared_sections();
 
     const BlockLayout &layout = contact->surfaces().layout();
     layout.reinit(now.unknowns);
@@ -156,6 +162,36 @@ namespace Nodus
         error = "the node at " + coordinates(surfaces.nodes()[n].X) +
                 " of a contact surface belongs to a face whose rigid motion is in part 'Free'; leave a row of faces "
                 "between the two ('Slave where', 'Master where'), or prescribe that motion";
+    throw_everywhere<InputError>(error, communicator);
+  }
+
+  /// Contact takes the slave sides of sections back along the axes of the bolts: no other surface goes with them.
+  void Model::refuse_shared_sections() const
+  {
+    const ContactSurfaces &surfaces = contact->surfaces();
+    const auto             sections = rigid_bodies.sections();
+    constexpr unsigned int none     = dealii::numbers::invalid_unsigned_int;
+    if (std::all_of(sections.begin(), sections.end(), [](const unsigned int section) { return section == none; }))
+      return;
+    Vector number(surfaces.layout().owned[0], communicator); // of the pair, from 1, that nodes are on the slave side of
+    for (unsigned int n = 0; n < surfaces.nodes().size(); ++n)
+      if (const DoFIndex dof = surfaces.nodes()[n].dofs[0];
+          surfaces.section_of_node(n) != none && surfaces.layout().owned[0].is_element(dof))
+        number(dof) = rigid_bodies.pair(surfaces.section_of_node(n)) + 1.;
+    number.compress(dealii::VectorOperation::insert);
+    std::vector<Vector3> at_nodes;
+    surfaces.gather(number, at_nodes);
+    std::string error;
+    for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
+      for (const SurfaceSide side : {slave_side, master_side})
+        for (const SurfaceFace &face : side == slave_side ? surfaces.slave_faces(p) : surfaces.master_faces(p))
+          for (const unsigned int n : face.nodes)
+            if (const double of = at_nodes[n][0]; of != 0. && !(side == slave_side && of == p + 1.) && error.empty())
+              error = "the node at " + coordinates(surfaces.nodes()[n].X) + " of " +
+                      pair_label(parameters.contact_pairs, p) + " is on the slave side of the section of " +
+                      pair_label(parameters.contact_pairs, static_cast<unsigned int>(of) - 1) +
+                      ", which a preload moves; leave a row of faces between the two ('Slave where', 'Master where'), "
+                      "or exchange the two sides of the section";
     throw_everywhere<InputError>(error, communicator);
   }
 
@@ -282,6 +318,8 @@ namespace Nodus
       else
         line << surfaces.n_faces(p, master_side) << " master faces";
       line << ", mean slave face size " << surfaces.face_size(p);
+      if (const unsigned int section = surfaces.section(p); section != dealii::numbers::invalid_unsigned_int)
+        line << ", section of a bolt along " << coordinates(Point(surfaces.axis(section)));
       lines.push_back(line.str());
     }
     return lines;

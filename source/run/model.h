@@ -29,6 +29,8 @@ namespace Nodus
 
     /// @throws InputError on every rank where nodes of coupled faces are part of contact surfaces.
     void refuse_coupled_contact() const;
+    /// @throws InputError on every rank where the slave side of a bolt's section has nodes of other contact surfaces.
+    void refuse_shared_sections() const;
     /// All that is made for the mesh as it is. The state at hand is at rest then, but for what does not depend on the
     /// mesh: rigid bodies, energies.
     void set_up_mesh(State &now);

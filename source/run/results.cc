@@ -106,10 +106,21 @@ namespace Nodus
       reactions_.emplace_back(region.name, force);
     }
     rigid_motions_.clear();
+    preloads_.clear();
     const RigidBodies &rigid_bodies = model_.rigid_bodies;
     for (unsigned int b = 0; b < rigid_bodies.size(); ++b)
     {
       const RigidBodies::Components &applied = states_.now.rigid[b].applied;
+      if (rigid_bodies.is_section(b))
+      {
+        const Vector3 &force = resultants_[rigid_bodies.pair(b)].slave_force, &axis = rigid_bodies.axis(b);
+        preloads_.push_back({rigid_bodies.name(b),
+                             applied[0],
+                             rigid_bodies.translation(b)[0],
+                             force - (force * axis) * axis,
+                             !rigid_bodies.is_free(b, 0)});
+        continue;
+      }
       rigid_motions_.push_back({rigid_bodies.name(b),
                                 rigid_bodies.translation(b),
                                 rigid_bodies.rotation(b),
@@ -131,6 +142,7 @@ namespace Nodus
                          resultants_,
                          table,
                          rigid_motions_,
+                         preloads_,
                          states_.committed.energies,
                          journal_.counts,
                          journal_.verdict);
@@ -164,6 +176,11 @@ namespace Nodus
   const std::vector<RigidBodyMotion> &Results::rigid_motions() const
   {
     return rigid_motions_;
+  }
+
+  const std::vector<PreloadSection> &Results::preloads() const
+  {
+    return preloads_;
   }
 
   Vector3 Results::displacement(const unsigned int body, const Point &X) const

@@ -37,6 +37,7 @@ namespace Nodus
     const std::vector<ContactResultants>               &resultants() const;
     const std::vector<std::pair<std::string, Vector3>> &reactions() const;
     const std::vector<RigidBodyMotion>                 &rigid_motions() const;
+    const std::vector<PreloadSection>                  &preloads() const;
     /// Of the node of body @p body (number, from 1) at @p X. Collective. @throws InputError without one.
     Vector3 displacement(unsigned int body, const Point &X) const;
 
@@ -57,6 +58,7 @@ namespace Nodus
     std::vector<ContactResultants>               resultants_;
     std::vector<std::pair<std::string, Vector3>> reactions_;
     std::vector<RigidBodyMotion>                 rigid_motions_;
+    std::vector<PreloadSection>                  preloads_;
     std::unique_ptr<VtuOutput>                   vtu_;
     std::unique_ptr<BodyPoints>                  points_; ///< of all points, then of all lines; null without any
   };

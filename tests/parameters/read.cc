@@ -153,6 +153,9 @@ namespace
     print("adjustment distance", pair.start.adjustment_distance);
     print("overclosure limit", pair.start.overclosure_limit);
     print_choice("status test", pair.status_test);
+    print("preload", pair.preload.force);
+    print("preload until", pair.preload.until);
+    print("preload axis", pair.preload.axis);
     print("active from", pair.active_from);
     print("active until", pair.active_until);
   }

@@ -178,7 +178,7 @@ int main(int argc, char **argv)
   expect("what its index does not name does not count", restart(p), {"increment 7"});
 
   put(kept, checkpoints);
-  set_first_line(checkpoints / "000006" / "index", "nodus checkpoint 19\n");
+  set_first_line(checkpoints / "000006" / "index", "nodus checkpoint 20\n");
   expect("an index with an empty line is passed over", restart(p), {"increment 5"});
 
   put(kept, checkpoints);

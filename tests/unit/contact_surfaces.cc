@@ -24,7 +24,7 @@ namespace
       if (surfaces.layout().owned[0].is_element(node.dofs[0]) && node.X[2] > 1.05)
         u(node.dofs[0]) = shift;
     u.compress(dealii::VectorOperation::insert);
-    const bool fetched = f.surfaces->fetch_masters(u);
+    const bool fetched = f.surfaces->fetch_masters(u, {});
     const bool ranks   = dealii::Utilities::MPI::n_mpi_processes(communicator) > 1;
     check("  masters are fetched anew where there are ranks and the strip has moved",
           fetched == (ranks && shift != 0.));

@@ -55,6 +55,11 @@ class Results:
         return self.table("rigid_bodies.csv")
 
     @property
+    def preload(self):
+        """preload.csv: force and shortening of bolts; one row per increment and pair with a Preload."""
+        return self.table("preload.csv")
+
+    @property
     def energy(self):
         """energy.csv: energies since the start; one row per increment."""
         return self.table("energy.csv")
@@ -143,7 +148,7 @@ class Results:
 
     def _repr_html_(self):
         rows = []
-        for file in ("contact.csv", "masters.csv", "reactions.csv", "rigid_bodies.csv", "points.csv", "lines.csv", "energy.csv", "convergence.csv"):
+        for file in ("contact.csv", "masters.csv", "reactions.csv", "rigid_bodies.csv", "preload.csv", "points.csv", "lines.csv", "energy.csv", "convergence.csv"):
             if os.path.exists(os.path.join(self.folder, file)):
                 there = self.table(file)
                 rows.append([file, f"{len(there)} rows: {', '.join(there.names[:12])}" + ", ..." * (len(there.names) > 12)])

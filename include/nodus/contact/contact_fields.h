@@ -98,6 +98,16 @@ namespace Nodus
     Vector3     force;       ///< on the body, but for contact and loads on its cells [force]
     Vector3     moment;      ///< of the same about its centre as it moves [force length]
   };
+
+  /// The section of a bolt that a preload tightens.
+  struct PreloadSection
+  {
+    std::string name;       ///< of its contact pair
+    double      force;      ///< in the bolt along its axis, tension is positive [force]
+    double      shortening; ///< of the bolt between the two faces of the section, since the start [length]
+    Vector3     shear;      ///< what acts across the axis, on the slave side [force]
+    bool        locked;     ///< the length is what has been reached, the force follows the loads
+  };
 } // namespace Nodus
 
 #endif

@@ -215,6 +215,13 @@ namespace Nodus
       double             adjustment_distance = 0.; ///< gaps up to here are adjusted, too [length]
       double             overclosure_limit   = 0.; ///< [length]; 0 = automatic
     };
+    /// Of a tied pair that cuts a bolt in two: the length of the bolt between the two faces is what a force makes it.
+    struct Preload
+    {
+      std::string force;      ///< of the time t, tension is positive [force]; empty: the pair is no such section
+      double      until = 0.; ///< from then on the length is what has been reached; 0: the force acts all the time
+      Vector3     axis;       ///< of the bolt; zero: the mean normal of the slave faces
+    };
     std::string      name;
     RegionParameters slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
     RegionParameters master; ///< keys "Master body", ...; that of the slave where the surface touches itself
@@ -249,11 +256,22 @@ namespace Nodus
     StatusTest                 status_test = StatusTest::weighted;
 
     MasterSurfaceParameters master_surface; ///< instead of the master faces; keys "Master surface", ...
+    Preload                 preload;        ///< keys "Preload", "Preload until", "Preload axis"
 
     /// One in closed form that moves with a rigid body of the model.
     bool has_carried_master() const
     {
       return has_rigid_master() && !master.bodies.empty();
+    }
+    /// Of a bolt, which a force tightens.
+    bool is_section() const
+    {
+      return !preload.force.empty();
+    }
+    /// Whether the preload acts at time @p t, or the section is locked.
+    bool is_tightened(const double t) const
+    {
+      return acts(t) && (preload.until == 0. || t <= preload.until);
     }
     bool has_rigid_master() const
     {

@@ -50,7 +50,9 @@ namespace Nodus
     reactions() const; ///< by displacement condition: ground on bodies
     /// Of those with free components, at the last converged increment.
     const std::vector<RigidBodyMotion> &rigid_bodies() const;
-    const IterationCounts              &iterations() const;
+    /// Of the contact pairs with a Preload, at the last converged increment.
+    const std::vector<PreloadSection> &preload_sections() const;
+    const IterationCounts             &iterations() const;
     /// Displacement of the node of body @p body (number, from 1) at reference position @p X. Collective; throws
     /// InputError without one.
     Vector3 displacement(unsigned int body, const Point &X) const;
