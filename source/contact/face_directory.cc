@@ -1,5 +1,6 @@
 #include "contact/face_directory.h"
 #include "base/deal_ii_versions.h"
+#include "mesh/bodies.h"
 #include "mesh/region.h"
 #include "parallel/all_gather.h"
 #include "parallel/sparse_exchange.h"
@@ -34,6 +35,7 @@ namespace Nodus
   }
 
   void FaceDirectory::collect(const Region                         &region,
+                              const Bodies                         &bodies,
                               const dealii::Mapping<dim>           &mapping,
                               const unsigned int                    pair,
                               const unsigned int                    side,
@@ -63,6 +65,7 @@ namespace Nodus
             record.rank        = rank_;
             record.cell        = cell->active_cell_index();
             record.body        = cell->material_id() + 1;
+            record.refined     = std::max<int>(0, cell->level() - bodies.level(cell->material_id()));
             for (const auto &[number, other] : elsewhere)
               if (other.selects_face(mapping, cell, f))
                 record.elsewhere.push_back(number);

@@ -15,6 +15,7 @@
 
 namespace Nodus
 {
+  class Bodies;
   class Region;
 
   enum SurfaceSide : unsigned int
@@ -33,6 +34,7 @@ namespace Nodus
     unsigned int number;    ///< in its pair and side, in the order of the cells, which does not depend on the ranks
     unsigned int cell;      ///< active cell index on the rank that owns it
     unsigned int body;      ///< its number, from 1
+    unsigned int refined;   ///< how often the run has split its cell, Bodies::level() not counted
     DoFIndex     across[4]; ///< first degrees of freedom of the corners of the face across the cell, ...
     double       X_across[4][dim]; ///< ... and where they are
     /// Of degree 1: the face's share in the averaged normals of its corners (eq. P7).
@@ -68,8 +70,8 @@ namespace Nodus
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int)
     {
-      archive &dofs &X &orientation &pair &side &rank &number &cell &body &across &X_across &normal_share &elsewhere
-          &followers;
+      archive &dofs &X &orientation &pair &side &rank &number &cell &body &refined &across &X_across &normal_share
+          &elsewhere &followers;
     }
     bool operator<(const FaceRecord &other) const
     {
@@ -85,6 +87,7 @@ namespace Nodus
 
     /// Adds the faces of owned cells in @p region. @p elsewhere: what becomes FaceRecord::elsewhere of those in it.
     void collect(const Region                         &region,
+                 const Bodies                         &bodies,
                  const dealii::Mapping<dim>           &mapping,
                  unsigned int                          pair,
                  unsigned int                          side,

@@ -89,7 +89,7 @@ namespace Nodus
       X.push_back(surfaces.nodes()[node].X);
     const FaceGeometry middle(shape, X.data());
     const Vector3      area = face.orientation * middle.area_vector();
-    role.size               = std::sqrt(area.norm());
+    role.size               = std::ldexp(std::sqrt(area.norm()), face.refined); // so that roles stay on new meshes
     role.looks              = direction * area / area.norm();
     role.place              = direction * Vector3(middle.x);
     return role;

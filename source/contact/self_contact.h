@@ -96,7 +96,7 @@ namespace Nodus
     {
       bool         rigid;     ///< of a rigid body
       bool         held;      ///< no node of it can move
-      double       size;      ///< reference configuration [length]
+      double       size;      ///< reference configuration, before the run adapts the mesh [length]
       double       stiffness; ///< Young's modulus of the body
       unsigned int body;
       double       looks, place; ///< normal and middle along one direction, reference configuration

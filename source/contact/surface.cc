@@ -73,7 +73,7 @@ namespace Nodus
     {
       const std::map<unsigned int, Region> elsewhere = sides_before(pairs, p, bodies);
       sites_.has_points.push_back(pairs[p].scheme == ContactPairParameters::Scheme::integration_point);
-      directory_.collect(side_region(pairs, p, slave_side, bodies), mapping, p, slave_side, elsewhere);
+      directory_.collect(side_region(pairs, p, slave_side, bodies), bodies, mapping, p, slave_side, elsewhere);
       rigid_masters_.push_back(
           pairs[p].has_rigid_master()
               ? std::make_unique<RigidSurface>(pairs[p].master_surface,
@@ -81,7 +81,7 @@ namespace Nodus
                                                pairs[p].surface == ContactPairParameters::Surface::smoothed)
               : nullptr);
       if (!rigid_masters_[p])
-        directory_.collect(side_region(pairs, p, master_side, bodies), mapping, p, master_side, elsewhere);
+        directory_.collect(side_region(pairs, p, master_side, bodies), bodies, mapping, p, master_side, elsewhere);
     }
     directory_.publish();
     throw_everywhere<InputError>(repeated_slave_face(), communicator_);
@@ -174,6 +174,7 @@ namespace Nodus
     face.number      = record.number;
     face.cell        = record.cell;
     face.body        = record.body;
+    face.refined     = record.refined;
     if (pairs_[record.pair].self_contact)
       for (unsigned int n = 0; n < 4; ++n)
         face.across[n] = node(record.across[n]);

@@ -16,9 +16,10 @@ namespace Nodus
     std::vector<unsigned int> nodes;       ///< indices into ContactSurfaces::nodes()
     double                    orientation; ///< +1 when x_xi x x_eta points out of the body, -1 otherwise
     unsigned int              owner;       ///< rank of the cell
-    unsigned int              number = 0;  ///< in its pair and side on all ranks
-    unsigned int              cell   = 0;  ///< active cell index on its owner
-    unsigned int              body   = 0;  ///< its number, from 1
+    unsigned int              number  = 0; ///< in its pair and side on all ranks
+    unsigned int              cell    = 0; ///< active cell index on its owner
+    unsigned int              body    = 0; ///< its number, from 1
+    unsigned int              refined = 0; ///< how often the run has split its cell
 
     /// Of pairs with self-contact: the corners of the face across the cell, in the order of this one's.
     std::array<unsigned int, 4> across = {};

@@ -94,6 +94,11 @@ namespace Nodus
     {
       return names_;
     }
+    /// How often the cells of body @p index have been split at the most before the run adapts the mesh.
+    unsigned int level(const unsigned int index) const
+    {
+      return levels_[index];
+    }
     bool has_mesh(const unsigned int index) const
     {
       return has_mesh_[index];
@@ -122,6 +127,7 @@ namespace Nodus
     std::unique_ptr<Triangulation>                           triangulation_;
     RefinableTriangulation                                  *refinable_ = nullptr; ///< the same, if it is of that kind
     std::vector<std::string>                                 names_;
+    std::vector<unsigned int>                                levels_;
     std::vector<bool>                                        has_mesh_;
     std::vector<std::set<dealii::types::boundary_id>>        boundary_ids_;
     std::vector<std::map<unsigned int, std::string>>         boundary_names_;

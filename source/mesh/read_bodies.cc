@@ -282,6 +282,7 @@ namespace Nodus
       {
         const BodyParameters &body = parameters[b];
         names_.push_back(display_name(body, b));
+        levels_.push_back(body.global_refinement + body.local_refinement);
         boundary_names_.emplace_back();
         has_mesh_.push_back(body.has_mesh() || !body.rigid);
         if (!has_mesh_[b])
