@@ -269,6 +269,9 @@ namespace Nodus
       evidence.unstable      = p.equilibrium.unstable();
       evidence.relaxed       = p.journal.counts.remedies[Remedy::relaxation] > 0;
       evidence.motion_known  = has_motion(p);
+      for (const Measure measure : {Measure::penetration, Measure::unseen_depth, Measure::passed})
+        evidence.intruded =
+            evidence.intruded || (failure.kind() == SolverFailure::Kind::judged && !p.journal.verdict[measure].holds());
       find_worst_nodes(p, evidence);
       find_changing_sites(p, evidence);
       find_partners(p, evidence);

@@ -144,6 +144,22 @@ int main(int argc, char **argv)
           "9 of 9 sites have no master point within 0.1",
           "`Contact pair 1/Search distance` | 0.1 | 0.4"});
 
+  Parameters corner       = Parameters::read(SOURCE_DIR "/../../prm/snap_fit.prm",
+                                       {"Contact pair 1/Slave body=hook",
+                                              "Contact pair 1/Slave boundary ids=tooth",
+                                              "Contact pair 1/Master body=catch",
+                                              "Contact pair 1/Master boundary ids=catch",
+                                              "Load stepping/Interval ends=0.3",
+                                              "Load stepping/Increments=30"});
+  corner.output.write_vtu = false;
+  expect("a corner of the master that presses into faces of the slave",
+         page(corner),
+         "an edge or a corner of one surface goes in between the nodes of the other one",
+         {"`Contact pair 1/Slave body` | 1 | 2",
+          "--set \"Contact pair 1/Slave body=2\" --set \"Contact pair 1/Slave boundary ids=22\" --set \"Contact pair "
+          "1/Slave "
+          "where=\" --set \"Contact pair 1/Master body=1\" --set \"Contact pair 1/Master boundary ids=12\""});
+
   auto newton = p;
   for (auto &body : newton.bodies)
     body.material.law = MaterialParameters::Law::neo_hookean;

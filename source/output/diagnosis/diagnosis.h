@@ -69,6 +69,7 @@ namespace Nodus
     bool unstable     = false; ///< iterates had more negative eigenvalues than multipliers
     bool relaxed      = false; ///< relaxation was tried
     bool motion_known = false; ///< the state file has the motion that was resisted least
+    bool intruded     = false; ///< the judge refused how far the surfaces are in each other
 
     std::vector<std::string> free_motions; ///< rigid motions that nothing resists (contact/free_motions.h)
     std::vector<std::string> left_free;    ///< what would be left of them if all sites with a master point were closed

@@ -11,8 +11,6 @@ namespace Nodus
   {
     /// A slave node that moves by more than this part of a face in an increment meets other faces in each iteration.
     constexpr double large_step = 0.5;
-    /// Slave faces that are so many times as large as those of the master do not see what is between their points.
-    constexpr double coarser = 1.5;
     /// Relative force residuals below this that do not fall any more are round-off of a badly conditioned system.
     constexpr double noise_floor = 1e-6;
     /// More passes or iterations than this are not worth while.
@@ -183,37 +181,6 @@ namespace Nodus
       }
     }
 
-    /// Where gaps are taken at points of the slave, what is between these is not seen.
-    void add_coarse_slave(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes)
-    {
-      for (unsigned int p = 0; p < evidence.pairs.size(); ++p)
-      {
-        const auto &pair     = evidence.pairs[p];
-        const auto &keys     = parameters.contact_pairs[p];
-        const bool  averaged = keys.scheme == ContactPairParameters::Scheme::averaged;
-        const bool  exact    = averaged && keys.integration == ContactPairParameters::Integration::segment;
-        if (pair.face_size <= coarser * pair.master_face_size || exact)
-          continue;
-        // a scheme that brings its own weights refuses others
-        std::vector<std::pair<std::string, std::string>> own_weights;
-        if (keys.weights != ContactPairParameters::Weights::nodal_quadrature)
-          own_weights.emplace_back("Weights", "nodal quadrature");
-        causes.push_back({"the master has finer faces than the slave",
-                          {text(pair_name(parameters, p),
-                                ": mean slave face ",
-                                pair.face_size,
-                                ", mean master face ",
-                                pair.master_face_size,
-                                "; gaps are taken at points of the slave faces, and what is between these is not seen"),
-                           evidence.message},
-                          {{in_pair(p, averaged ? "Integration" : "Scheme"),
-                            averaged ? text_of(keys.integration) : text_of(keys.scheme),
-                            averaged ? "segment" : "averaged",
-                            "gaps are integrated over the overlaps of the faces; or exchange slave and master",
-                            own_weights}}});
-      }
-    }
-
     void add_distorted_cells(const Parameters      &parameters,
                              const History         &history,
                              const FailureEvidence &evidence,
@@ -353,6 +320,8 @@ namespace Nodus
       add_prescribed_contact(parameters, evidence, causes);
     if (kind == Kind::judged)
       add_coarse_slave(parameters, evidence, causes);
+    if (evidence.intruded)
+      add_edge_between_nodes(parameters, evidence, causes);
     if (kind == Kind::over_constraint)
       add_over_constraint(parameters, evidence, causes);
     if (evidence.unstable && kind != Kind::free_body && kind != Kind::inverted_cell)

@@ -60,6 +60,10 @@ namespace Nodus
                          Causes                &causes);
     /// Displacements of both sides of a contact are prescribed.
     void add_prescribed_contact(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
+    /// Where gaps are taken at points of the slave, what is between these is not seen.
+    void add_coarse_slave(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
+    /// Edges that press are better slave than master.
+    void add_edge_between_nodes(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
     void add_over_constraint(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
     /// Statuses that come and go.
     void add_status_cycle(const Parameters      &parameters,
