@@ -65,7 +65,7 @@ namespace Nodus
             record.rank        = rank_;
             record.cell        = cell->active_cell_index();
             record.body        = cell->material_id() + 1;
-            record.refined     = std::max<int>(0, cell->level() - bodies.level(cell->material_id()));
+            record.refined     = std::max(0, cell->level() - static_cast<int>(bodies.level(cell->material_id())));
             for (const auto &[number, other] : elsewhere)
               if (other.selects_face(mapping, cell, f))
                 record.elsewhere.push_back(number);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace Nodus
@@ -48,20 +49,24 @@ namespace Nodus
   public:
     struct Finding
     {
-      double      value = 0., tolerance = 0.;
-      std::string where; ///< in words, may be empty
+      double       value = 0., tolerance = 0.;
+      std::string  where;                                       ///< in words, may be empty
+      unsigned int pair = std::numeric_limits<unsigned>::max(); ///< contact pair, from 0, where one is to blame
 
       bool holds() const
       {
         return value <= tolerance; // not where it is no number
       }
       /// Takes a larger value; where it is a number no more, that.
-      void raise(const double other, const std::string &there)
+      void raise(const double       other,
+                 const std::string &there,
+                 const unsigned int of_pair = std::numeric_limits<unsigned>::max())
       {
         if (other <= value)
           return;
         value = other;
         where = there;
+        pair  = of_pair;
       }
       /// Part of the tolerance that is used up; that of a tolerance of zero does not count unless it is violated.
       double share() const

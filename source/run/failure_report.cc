@@ -269,12 +269,13 @@ namespace Nodus
       evidence.unstable      = p.equilibrium.unstable();
       evidence.relaxed       = p.journal.counts.remedies[Remedy::relaxation] > 0;
       evidence.motion_known  = has_motion(p);
-      for (const Measure measure : {Measure::penetration, Measure::unseen_depth, Measure::passed})
-        evidence.intruded =
-            evidence.intruded || (failure.kind() == SolverFailure::Kind::judged && !p.journal.verdict[measure].holds());
       find_worst_nodes(p, evidence);
       find_changing_sites(p, evidence);
       find_partners(p, evidence);
+      for (const Measure measure : {Measure::penetration, Measure::unseen_depth, Measure::passed})
+        if (const Verdict::Finding &finding = p.journal.verdict[measure];
+            failure.kind() == SolverFailure::Kind::judged && !finding.holds() && finding.pair < evidence.pairs.size())
+          evidence.pairs[finding.pair].intruded = true;
       if (failure.kind() == SolverFailure::Kind::over_constraint)
         find_repeated_constraint(p, evidence);
       for (const auto &motion : free_motions(p.model, p.states.now, increment.end))

@@ -366,11 +366,11 @@ namespace Nodus
       const Intrusion &intrusion = intrusions[p];
       const double     inside    = intrusion.depth - adjusted[p];
       if (closed[p] > 0)
-        depth.raise(inside / smaller_face_[p], where(intrusion.deepest));
+        depth.raise(inside / smaller_face_[p], where(intrusion.deepest), p);
       else
-        unseen.raise((inside - bulge[p]) / smaller_face_[p], where(intrusion.deepest));
+        unseen.raise((inside - bulge[p]) / smaller_face_[p], where(intrusion.deepest), p);
       if (intrusion.passed > 0)
-        passed.raise(passed.value + intrusion.passed, where(intrusion.first_passed));
+        passed.raise(passed.value + intrusion.passed, where(intrusion.first_passed), p);
     }
   }
 } // namespace Nodus

@@ -1,6 +1,7 @@
 // Runs that cannot succeed say so: loop, reason, worst node, last converged state.
 
 #include "../cases.h"
+#include "../messages.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -25,16 +26,6 @@ namespace
   bool says(const std::string &text, const std::string &words)
   {
     return text.find(words) != std::string::npos;
-  }
-
-  void check_words(const std::string &what, const std::string &message, const std::vector<std::string> &words)
-  {
-    bool all = true;
-    for (const auto &w : words)
-      all = all && message.find(w) != std::string::npos;
-    check(what, all);
-    if (!all && root())
-      std::cout << "  " << message << std::endl;
   }
 } // namespace
 

@@ -3,6 +3,7 @@
 // are excluded may overlap, and what touches is no overlap.
 
 #include "../cases.h"
+#include "../messages.h"
 
 #include <filesystem>
 #include <fstream>
@@ -54,16 +55,6 @@ namespace
       return error.what();
     }
     return "no failure";
-  }
-
-  void check_words(const std::string &what, const std::string &message, const std::vector<std::string> &words)
-  {
-    bool all = true;
-    for (const auto &w : words)
-      all = all && message.find(w) != std::string::npos;
-    check(what, all);
-    if (!all && root())
-      std::cout << "  " << message << std::endl;
   }
 
   /// One body of two columns, one on the other, a wider one, which are @p apart.

@@ -1,5 +1,6 @@
 // Which checkpoint a restart takes: the last complete one, of the same model and format, and how many are kept.
 
+#include "../messages.h"
 #include "sliding_block.h"
 
 #include <nodus/base/signals.h>
@@ -41,16 +42,6 @@ namespace
     return first;
   }
 
-  void expect(const std::string &what, const std::string &answer, const std::vector<std::string> &words)
-  {
-    bool all = true;
-    for (const auto &w : words)
-      all = all && answer.find(w) != std::string::npos;
-    check(what, all);
-    if (!all && root())
-      std::cout << "  " << answer << std::endl;
-  }
-
   std::vector<std::string> present()
   {
     std::vector<std::string> names;
@@ -86,7 +77,7 @@ int main(int argc, char **argv)
   Parameters p                 = SlidingBlock::parameters(folder);
   p.output.write_vtu           = false;
   p.output.checkpoint_interval = 3;
-  expect("without a checkpoint it begins at the start", restart(p), {"increment 1"});
+  check_words("without a checkpoint it begins at the start", restart(p), {"increment 1"});
   check("every third increment, two are kept", present() == std::vector<std::string>({"000003", "000006"}));
 
   ContactProblem interrupted(p, world(), log());
@@ -96,7 +87,7 @@ int main(int argc, char **argv)
 
   const fs::path kept = folder / "kept";
   put(checkpoints, kept);
-  expect("the last one is taken", restart(p), {"increment 7"});
+  check_words("the last one is taken", restart(p), {"increment 7"});
 
   {
     // No file may become larger than half a piece: as on a full disk.
@@ -108,7 +99,7 @@ int main(int argc, char **argv)
     setrlimit(RLIMIT_FSIZE, &small);
     const std::string message = restart(p);
     setrlimit(RLIMIT_FSIZE, &limit);
-    expect("a full disk is told", message, {"cannot write", "is the disk full?"});
+    check_words("a full disk is told", message, {"cannot write", "is the disk full?"});
     check("  and the checkpoint before is still there, alone", present() == std::vector<std::string>({"000004"}));
   }
 
@@ -139,9 +130,9 @@ int main(int argc, char **argv)
     };
     restart(fields);
     const auto between = (size("bodies_0000.vtu") + size("bodies_0001.vtu")) / 2;
-    expect("a disk that is full before", run_full(2000), {"cannot write", "bodies_0000.vtu", "is the disk full?"});
+    check_words("a disk that is full before", run_full(2000), {"cannot write", "bodies_0000.vtu", "is the disk full?"});
     check("  leaves no incomplete file", left().empty());
-    expect("one that fills later", run_full(between), {"cannot write", "bodies_0001.vtu", "is the disk full?"});
+    check_words("one that fills later", run_full(between), {"cannot write", "bodies_0001.vtu", "is the disk full?"});
     check("  leaves complete files",
           left() == std::vector<std::string>({"bodies.pvd",
                                               "bodies_0000.vtu",
@@ -157,7 +148,7 @@ int main(int argc, char **argv)
   put(kept, checkpoints);
   const fs::path piece = checkpoints / "000006" / "piece.0000";
   fs::resize_file(piece, fs::file_size(piece) - 10);
-  expect("a truncated one is passed over", restart(p), {"increment 5"});
+  check_words("a truncated one is passed over", restart(p), {"increment 5"});
 
   put(kept, checkpoints);
   {
@@ -165,55 +156,55 @@ int main(int argc, char **argv)
     const int    byte = file.seekg(20).get();
     file.seekp(20).put(static_cast<char>(~byte));
   }
-  expect("a changed one is passed over", restart(p), {"increment 5"});
+  check_words("a changed one is passed over", restart(p), {"increment 5"});
 
   put(kept, checkpoints);
   fs::remove(piece);
   fs::create_directory(piece);
-  expect("one with a folder for a file is passed over", restart(p), {"increment 5"});
+  check_words("one with a folder for a file is passed over", restart(p), {"increment 5"});
 
   put(kept, checkpoints);
   std::ofstream(checkpoints / "000006" / "index", std::ios::app) << '\n';
   std::ofstream(checkpoints / "000006" / "piece.0001") << "garbage\n";
-  expect("what its index does not name does not count", restart(p), {"increment 7"});
+  check_words("what its index does not name does not count", restart(p), {"increment 7"});
 
   put(kept, checkpoints);
   set_first_line(checkpoints / "000006" / "index", "nodus checkpoint 20\n");
-  expect("an index with an empty line is passed over", restart(p), {"increment 5"});
+  check_words("an index with an empty line is passed over", restart(p), {"increment 5"});
 
   put(kept, checkpoints);
   fs::rename(checkpoints / "000006", checkpoints / "000006.incomplete");
-  expect("an unfinished one does not count", restart(p), {"increment 5"});
+  check_words("an unfinished one does not count", restart(p), {"increment 5"});
 
   put(kept, checkpoints);
   for (const std::string name : {"000004", "000006"})
     fs::resize_file(checkpoints / name / "index", 30);
-  expect("nothing but damaged ones: refused", restart(p), {"no checkpoint can be used", "000004", "000006"});
+  check_words("nothing but damaged ones: refused", restart(p), {"no checkpoint can be used", "000004", "000006"});
 
   put(kept, checkpoints);
   set_first_line(checkpoints / "000006" / "index", "nodus checkpoint 999");
-  expect("another format: refused", restart(p), {"another version of nodus", "999"});
+  check_words("another format: refused", restart(p), {"another version of nodus", "999"});
 
   put(kept, checkpoints);
   auto friction                                  = p;
   friction.contact_pairs[0].friction_coefficient = 0.35;
-  expect("another friction coefficient: refused",
-         restart(friction),
-         {"another model", "'Contact pair 1/Friction coefficient' was '0.3", "is '0.35"});
+  check_words("another friction coefficient: refused",
+              restart(friction),
+              {"another model", "'Contact pair 1/Friction coefficient' was '0.3", "is '0.35"});
   auto mesh                          = p;
   mesh.bodies[0].generator_arguments = "4,3,1 : 0,0,0 : 2,1,0.5 : true";
-  expect("another mesh: refused", restart(mesh), {"'Body 1/Generator arguments' was"});
+  check_words("another mesh: refused", restart(mesh), {"'Body 1/Generator arguments' was"});
   auto load                            = p;
   load.boundary_conditions[1].value[1] = "0.03*t";
-  expect("another load: refused", restart(load), {"'Boundary condition 2/Value' was"});
+  check_words("another load: refused", restart(load), {"'Boundary condition 2/Value' was"});
   auto pairs = p;
   pairs.contact_pairs.clear();
-  expect("no pair any more: refused", restart(pairs), {"Contact pair 1", "does not exist any more"});
+  check_words("no pair any more: refused", restart(pairs), {"Contact pair 1", "does not exist any more"});
 
   auto allowed                        = p;
   allowed.load_stepping.interval_ends = {0.5, 1., 1.2};
   allowed.load_stepping.increments    = {3, 10, 2};
   allowed.newton.maximum_iterations   = 20;
   allowed.output.checkpoint_interval  = 0;
-  expect("other increments, a longer path, other limits: accepted", restart(allowed), {"increment 7"});
+  check_words("other increments, a longer path, other limits: accepted", restart(allowed), {"increment 7"});
 }

@@ -1,9 +1,8 @@
 // A mesh from files that is not refined is held in shares, one that may be by p4est: the same run on either, and a
 // checkpoint of one continues on the other. A refined mesh cannot become one that is not.
 
+#include "interrupted.h"
 #include "sliding_block.h"
-
-#include <nodus/base/signals.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -63,15 +62,7 @@ namespace
           if (increment == last)
             std::raise(SIGTERM);
         });
-    if (restart)
-      problem.restart();
-    try
-    {
-      problem.run();
-    }
-    catch (const Interrupted &)
-    {
-    }
+    run_until_interrupted(problem, restart);
     return outcome(problem, times);
   }
 

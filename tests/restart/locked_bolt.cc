@@ -2,11 +2,9 @@
 // tightened to is part of the state: the time until which it is tightened may change as long as it lies ahead.
 
 #include "../bolted_joint.h"
-
-#include <nodus/base/signals.h>
+#include "interrupted.h"
 
 #include <csignal>
-#include <filesystem>
 
 using namespace BoltedJoint;
 
@@ -23,25 +21,8 @@ namespace
           if (increment == last)
             std::raise(SIGTERM);
         });
-    if (restart)
-      problem.restart();
-    try
-    {
-      problem.run();
-    }
-    catch (const Interrupted &)
-    {
-    }
+    run_until_interrupted(problem, restart);
     return sections;
-  }
-
-  Parameters in_folder(Parameters p, const std::string &folder)
-  {
-    p.output.results_folder = folder;
-    if (root())
-      std::filesystem::remove_all(folder);
-    MPI_Barrier(MPI_COMM_WORLD);
-    return p;
   }
 
   std::string contents(const std::string &file)
@@ -61,8 +42,8 @@ int main(int argc, char *argv[])
   for (unsigned int b = 0; b < 3; ++b)
     p.bodies[b].material.law = MaterialParameters::Law::neo_hookean;
 
-  const auto whole = run(in_folder(p, "locked_bolt_whole"), false);
-  auto       q     = in_folder(p, "locked_bolt_parts");
+  const auto whole = run(in_new_folder(p, "locked_bolt_whole"), false);
+  auto       q     = in_new_folder(p, "locked_bolt_parts");
   run(q, false, 4);
   const auto rest = run(q, true);
   check_equal("increments after the fourth", rest.size(), 2);
@@ -76,14 +57,14 @@ int main(int argc, char *argv[])
               contents("locked_bolt_whole/" + file) == contents("locked_bolt_parts/" + file));
 
   // at the end of the first step it is said that the bolt is tightened on
-  q = in_folder(p, "locked_bolt_parts");
+  q = in_new_folder(p, "locked_bolt_parts");
   run(q, false, 2);
   q.contact_pairs[0].preload.until = 0.;
   const auto longer                = run(q, true);
   check("tightened on: force", longer.back().force, force, 1e-8);
   check("not locked", !longer.back().locked);
   // but not once it has been locked
-  q = in_folder(p, "locked_bolt_parts");
+  q = in_new_folder(p, "locked_bolt_parts");
   run(q, false, 4);
   q.contact_pairs[0].preload.until = 0.;
   std::string message;

@@ -1,6 +1,7 @@
 // A run that is interrupted and continued is the run that never stopped: fields, tables and time series. On one rank to
 // the last digits; where the number of ranks changes, to what Newton's tolerance leaves.
 
+#include "interrupted.h"
 #include "sliding_block.h"
 
 #include <nodus/base/signals.h>
@@ -68,23 +69,14 @@ namespace
     return text;
   }
 
-  Parameters in_folder(Parameters p, const std::string &folder)
-  {
-    p.output.results_folder = folder;
-    if (root())
-      std::filesystem::remove_all(folder);
-    MPI_Barrier(MPI_COMM_WORLD);
-    return p;
-  }
-
   void compare(const std::string &name, const Parameters &p)
   {
     const std::string whole = "restart_whole_" + std::to_string(n_ranks()),
                       parts = "restart_parts_" + std::to_string(n_ranks());
     const bool    one       = n_ranks() == 1;
-    const Outcome reference = run(in_folder(p, whole), world(), false);
+    const Outcome reference = run(in_new_folder(p, whole), world(), false);
 
-    auto q = in_folder(p, parts);
+    auto q = in_new_folder(p, parts);
     run(q, world(), false, SIGTERM, 4);
     const Outcome continued = run(q, world(), true);
     check_equal(name + ": increments after the fourth", continued.times.size(), reference.times.size() - 4);
@@ -110,10 +102,10 @@ namespace
       return;
     }
     check("  fields: the same to 1e-6", difference(continued, reference) <= 1e-6);
-    q = in_folder(p, parts);
+    q = in_new_folder(p, parts);
     alone(q, false, SIGTERM, 3);
     check("  from one rank to all: the same to 1e-6", difference(run(q, world(), true), reference) <= 1e-6);
-    q = in_folder(p, parts);
+    q = in_new_folder(p, parts);
     run(q, world(), false, SIGTERM, 3);
     const Outcome single = alone(q, true);
     check("  from all ranks to one: the same to 1e-6", !root() || difference(single, reference) <= 1e-6);
@@ -125,8 +117,8 @@ namespace
     p.adaptivity.initial_cycles = 1;
     p.adaptivity.maximum_level  = 1;
     p.load_stepping             = {{0.1}, {1}};
-    const Outcome reference     = run(in_folder(p, "restart_whole_" + std::to_string(n_ranks())), world(), false);
-    const Outcome begun         = run(in_folder(p, "restart_parts_" + std::to_string(n_ranks())), world(), true);
+    const Outcome reference     = run(in_new_folder(p, "restart_whole_" + std::to_string(n_ranks())), world(), false);
+    const Outcome begun         = run(in_new_folder(p, "restart_parts_" + std::to_string(n_ranks())), world(), true);
     check("nothing to continue: begins at t = 0 with the same mesh",
           begun.times == reference.times && begun.groups[0].second.size() == reference.groups[0].second.size() &&
               difference(begun, reference) <= (n_ranks() == 1 ? 1e-12 : 1e-6));

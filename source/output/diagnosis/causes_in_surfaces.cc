@@ -52,12 +52,12 @@ namespace Nodus
     {
       SuspectedCause cause{
           "an edge or a corner of one surface goes in between the nodes of the other one", {evidence.message}, {}};
-      for (unsigned int p = 0; p < parameters.contact_pairs.size(); ++p)
+      for (unsigned int p = 0; p < evidence.pairs.size(); ++p)
       {
         const ContactPairParameters &keys  = parameters.contact_pairs[p];
         const RegionParameters      &slave = keys.slave, &master = keys.master;
-        if (keys.self_contact || keys.has_rigid_master() || !can_change_sides(parameters, slave) ||
-            !can_change_sides(parameters, master))
+        if (!evidence.pairs[p].intruded || keys.self_contact || keys.has_rigid_master() ||
+            !can_change_sides(parameters, slave) || !can_change_sides(parameters, master))
           continue;
         cause.changes.push_back({in_pair(p, "Slave body"),
                                  slave.body_numbers(),

@@ -69,7 +69,6 @@ namespace Nodus
     bool unstable     = false; ///< iterates had more negative eigenvalues than multipliers
     bool relaxed      = false; ///< relaxation was tried
     bool motion_known = false; ///< the state file has the motion that was resisted least
-    bool intruded     = false; ///< the judge refused how far the surfaces are in each other
 
     std::vector<std::string> free_motions; ///< rigid motions that nothing resists (contact/free_motions.h)
     std::vector<std::string> left_free;    ///< what would be left of them if all sites with a master point were closed
@@ -93,6 +92,7 @@ namespace Nodus
       double       penetration = 0.; ///< largest of open sites [face sizes]
       double gap   = std::numeric_limits<double>::max(); ///< smallest of open sites with a master point [face sizes]
       double reach = 0., face_size = 0., master_face_size = 0.; ///< [length]
+      bool   intruded = false; ///< the judge refused how far its surfaces are in each other
     };
     std::vector<Pair> pairs;
 

@@ -319,9 +319,10 @@ namespace Nodus
     if (kind == Kind::prescribed_contact)
       add_prescribed_contact(parameters, evidence, causes);
     if (kind == Kind::judged)
+    {
       add_coarse_slave(parameters, evidence, causes);
-    if (evidence.intruded)
       add_edge_between_nodes(parameters, evidence, causes);
+    }
     if (kind == Kind::over_constraint)
       add_over_constraint(parameters, evidence, causes);
     if (evidence.unstable && kind != Kind::free_body && kind != Kind::inverted_cell)
