@@ -13,6 +13,8 @@ namespace Nodus
     constexpr double free_weight = 0.1;
     /// Projection tolerance of sites that have a partner, over that of others.
     constexpr double partner_hysteresis = 2.;
+    /// Part of the projection tolerance that surfaces with the same rim may be apart along it.
+    constexpr double flush = 0.01;
 
     /// A SitePairing as sent to other ranks.
     struct PairingRecord
@@ -124,6 +126,21 @@ namespace Nodus
         nearest = Projection();
     }
 
+    /// Whether a point that is @p height over the master and @p overhang beyond its rim, both over what is tolerated,
+    /// is beside the body rather than on it. What slid off the rim and sank would be pressed back onto it otherwise.
+    bool is_beside(const double overhang, const double height)
+    {
+      return height < 0. && overhang > flush && std::hypot(overhang, height) > 1.;
+    }
+
+    bool is_beside(const MasterSearch &search, const SurfaceGeometry &master, const Projection &nearest, const Point &x)
+    {
+      const auto &[face, xi, eta] = nearest;
+      return is_beside(search.overhang(nearest, x).norm(),
+                       (x - master.at(face, xi, eta).x) * master.normal(face, xi, eta) /
+                           search.tolerated_overhang(face));
+    }
+
     /// Components in which the slave or the master part of a site's jump may move.
     std::array<bool, dim> free_motion(const ContactSurfaces &surfaces,
                                       const unsigned int     site,
@@ -197,6 +214,12 @@ namespace Nodus
       else
         pairing.master =
             geometry.closest_to_node(p, surfaces.slave_nodes()[s].node, sites.x[s], sites.normal[s], tolerance);
+      if (!partnered_[s] && pairing.master.found() &&
+          is_beside(geometry.search[p], geometry.master[p], pairing.master, sites.x[s]))
+        pairing.master = Projection();
+      if (!partnered_[s] && rigid.found &&
+          is_beside(rigid.overhang / geometry.overhang[p], rigid.height / geometry.overhang[p]))
+        rigid.found = false;
       partnered_[s]     = rigid.found || pairing.master.found();
       const bool paired = averages ? averaged.covered(s) : pairing.master.found() || rigid.found;
       // A node of the integration point scheme needs a frame for its multipliers even where its own projection fails.

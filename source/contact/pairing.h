@@ -34,7 +34,8 @@ namespace Nodus
     /// Collective.
     ///
     /// A site that has a partner keeps it up to twice the projection tolerance: where contact itself moves a node
-    /// across the limit, there would be no solution otherwise.
+    /// across the limit, there would be no solution otherwise. One that has none gets none where it is beside the
+    /// master's end, beyond the rim and below the surface.
     void project(const std::vector<ContactPairParameters> &pairs,
                  const ContactSurfaces                    &surfaces,
                  const ContactGeometry                    &geometry,
