@@ -2,13 +2,11 @@
 #include "contact/face_integral.h"
 #include "contact/face_rule.h"
 #include "contact/segments.h"
-#include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
-#include <map>
-#include <set>
+#include <utility>
 
 namespace Nodus
 {
@@ -106,37 +104,11 @@ namespace Nodus
       offset += weight * surfaces.nodes()[node].offset;
     }
 
-    /// Whoever owns a node sums over its faces, in an order that does not depend on the ranks. @p mine are those of @p
-    /// faces. Collective.
-    std::vector<FaceRows>
-    collect(const ContactSurfaces &surfaces, const std::vector<AveragedJump::Face> &faces, std::vector<FaceRows> mine)
+    /// Whether a pair has averaged jumps, and acts.
+    bool
+    averages(const std::vector<ContactPairParameters> &pairs, const ContactSurfaces &surfaces, const unsigned int p)
     {
-      std::map<unsigned int, std::vector<FaceRows>> outgoing;
-      for (unsigned int i = 0; i < mine.size(); ++i)
-      {
-        std::set<unsigned int> owners;
-        for (const unsigned int k : surfaces.slave_faces(faces[i].pair)[faces[i].face].slaves)
-          owners.insert(surfaces.site_owner(k));
-        for (const unsigned int owner : owners)
-          outgoing[owner].push_back(mine[i]);
-      }
-      mine.clear();
-      for (auto &[other, part] : sparse_exchange(surfaces.layout().communicator, outgoing))
-        mine.insert(mine.end(), part.begin(), part.end());
-      std::sort(mine.begin(),
-                mine.end(),
-                [](const FaceRows &a, const FaceRows &b)
-                { return std::make_pair(a.pair, a.number) < std::make_pair(b.pair, b.number); });
-      return mine;
-    }
-
-    /// Slave nodes of a face.
-    std::vector<unsigned int> slaves_of(const ContactSurfaces &surfaces, const FaceRows &face)
-    {
-      std::vector<unsigned int> slaves;
-      for (const DoFIndex dof : face.slaves)
-        slaves.push_back(surfaces.slave_number(face.pair, surfaces.node(dof)));
-      return slaves;
+      return pairs[p].scheme == ContactPairParameters::Scheme::averaged && surfaces.acts(p);
     }
 
     /// A surface that touches itself goes around the edges of bodies. What looks elsewhere than the covered faces at a
@@ -264,9 +236,9 @@ namespace Nodus
             areas[k][i] += area[i];
         });
     for (unsigned int k = 0; k < surfaces.n_owned_slave_nodes(); ++k)
-      cover_[k] = areas[k][0] >= (constrained_[k] ? still_covered : well_covered) * areas[k][1] ? Cover::well
-                  : areas[k][0] > 0.                                                            ? Cover::shared_out
-                                                                                                : Cover::little;
+      cover_[k] = !(areas[k][0] > 0.)                                                             ? Cover::little
+                  : areas[k][0] >= (constrained_[k] ? still_covered : well_covered) * areas[k][1] ? Cover::well
+                                                                                                  : Cover::shared_out;
     surfaces.slave_exchange().update(cover_);
     std::vector<unsigned int> alone;
     for_each_area(
@@ -318,6 +290,61 @@ namespace Nodus
     }
   }
 
+  /// Finds the points of this rank's faces and integrates over them. Most of a surface that touches itself is near
+  /// nothing: a face without points has an area at nodes that other faces have points around, and counts nowhere else.
+  /// Collective.
+  std::vector<FaceRows> AveragedJump::integrate(const std::vector<ContactPairParameters> &pairs,
+                                                const ContactSurfaces                    &surfaces,
+                                                const ContactGeometry                    &geometry,
+                                                const std::vector<Point>                 &x,
+                                                const std::vector<Point>                 &X)
+  {
+    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(surfaces.layout().communicator);
+    faces_.clear();
+    Face                                               face{};
+    std::vector<std::pair<unsigned int, unsigned int>> empty;       // pairs and faces
+    std::vector<double> covered(surfaces.slave_nodes().size(), 0.); // faces with points around each node
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+    {
+      if (!averages(pairs, surfaces, p))
+        continue;
+      const auto rule = face_rule(pairs[p], surfaces.degree());
+      for (unsigned int f = 0; f < geometry.slave[p].n_faces(); ++f)
+      {
+        if (geometry.slave[p].face(f).owner != rank)
+          continue;
+        face.pair = p;
+        face.face = f;
+        find_points(pairs[p], geometry, rule, face);
+        if (face.points.empty())
+        {
+          empty.emplace_back(p, f);
+          continue;
+        }
+        faces_.push_back(std::move(face));
+        for (const unsigned int k : geometry.slave[p].face(f).slaves)
+          covered[k] += 1.;
+      }
+    }
+    surfaces.slave_exchange().sum(covered);
+
+    std::vector<FaceRows> mine;
+    const auto            take = [&](const Face &f)
+    {
+      const bool current = pairs[f.pair].surface_measure == ContactPairParameters::SurfaceMeasure::current;
+      mine.push_back(FaceIntegral(pairs[f.pair], surfaces, geometry, f, current ? x : X).integrate());
+    };
+    for (const Face &f : faces_)
+      take(f);
+    for (const auto &[p, f] : empty)
+    {
+      const auto &slaves = geometry.slave[p].face(f).slaves;
+      if (std::any_of(slaves.begin(), slaves.end(), [&](const unsigned int k) { return covered[k] > 0.; }))
+        take({p, f, {}, {}, {}});
+    }
+    return collect(surfaces, std::move(mine));
+  }
+
   void AveragedJump::compute(const std::vector<ContactPairParameters> &pairs,
                              const ContactSurfaces                    &surfaces,
                              const ContactGeometry                    &geometry,
@@ -327,31 +354,13 @@ namespace Nodus
     rows_.assign(surfaces.slave_nodes().size(), Row());
     cover_.assign(rows_.size(), Cover::well);
     constrained_.resize(rows_.size(), false);
-    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(surfaces.layout().communicator);
-
-    std::vector<FaceRows> mine;
     faces_.clear();
     bool any = false;
     for (unsigned int p = 0; p < pairs.size(); ++p)
-    {
-      if (pairs[p].scheme != ContactPairParameters::Scheme::averaged || !surfaces.acts(p))
-        continue;
-      any                 = true;
-      const auto  rule    = face_rule(pairs[p], surfaces.degree());
-      const auto &measure = pairs[p].surface_measure == ContactPairParameters::SurfaceMeasure::current ? x : X;
-      for (unsigned int f = 0; f < geometry.slave[p].n_faces(); ++f)
-      {
-        if (geometry.slave[p].face(f).owner != rank)
-          continue;
-        faces_.push_back({p, f, {}, {}, {}});
-        Face &face = faces_.back();
-        find_points(pairs[p], geometry, rule, face);
-        mine.push_back(FaceIntegral(pairs[p], surfaces, geometry, face, measure).integrate());
-      }
-    }
+      any = any || averages(pairs, surfaces, p);
     if (!any)
       return;
-    std::vector<FaceRows> around = collect(surfaces, faces_, std::move(mine));
+    std::vector<FaceRows> around = integrate(pairs, surfaces, geometry, x, X);
     leave_out_beyond_edges(surfaces, around);
     share_out(surfaces, around);
     for (const FaceRows &face : around)

@@ -95,7 +95,7 @@ namespace Nodus
                             const dealii::Quadrature<2> &rule,
                             Face                        &face);
 
-    /// The slave faces of this rank.
+    /// The slave faces of this rank that have points.
     const std::vector<Face> &faces() const
     {
       return faces_;
@@ -111,8 +111,13 @@ namespace Nodus
       shared_out, ///< likewise, to the well covered nodes of all faces around it
       well
     };
-    void share_out(const ContactSurfaces &surfaces, const std::vector<FaceRows> &faces);
-    void add(const ContactSurfaces &surfaces, const FaceRows &face);
+    std::vector<FaceRows> integrate(const std::vector<ContactPairParameters> &pairs,
+                                    const ContactSurfaces                    &surfaces,
+                                    const ContactGeometry                    &geometry,
+                                    const std::vector<Point>                 &x,
+                                    const std::vector<Point>                 &X);
+    void                  share_out(const ContactSurfaces &surfaces, const std::vector<FaceRows> &faces);
+    void                  add(const ContactSurfaces &surfaces, const FaceRows &face);
 
     std::vector<Face>  faces_;
     std::vector<Cover> cover_; ///< per slave node, ghosts too

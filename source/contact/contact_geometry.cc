@@ -4,10 +4,11 @@
 
 #include <deal.II/numerics/rtree.h>
 
+#include <boost/iterator/function_output_iterator.hpp>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <map>
-#include <set>
 
 namespace Nodus
 {
@@ -17,12 +18,54 @@ namespace Nodus
     constexpr double far_side_cosine = 0.5;
     /// Face sizes that a point on the rim may be beyond it by round-off.
     constexpr double no_tolerance = 1e-12;
+
+    /// An edge of a face by its nodes in ascending order, then invalid ones, or those of the larger face's edge that it
+    /// is half of.
+    struct Edge
+    {
+      std::array<unsigned int, 9> nodes;
+      bool                        half = false;
+
+      Edge(const SurfaceFace &face, const unsigned int degree, const unsigned int e)
+      {
+        const unsigned int n = degree + 1, first[4] = {0, degree, 0, n * degree}, step[4] = {n, n, 1, 1};
+        nodes.fill(dealii::numbers::invalid_unsigned_int);
+        for (unsigned int i = 0; i < n; ++i)
+          nodes[i] = face.nodes[first[e] + i * step[e]];
+        for (unsigned int i = 0; i < n && !face.hanging.empty() && !half; ++i)
+          if (const auto *const hung = face.follower(first[e] + i * step[e]))
+            take_larger(hung->masters, n, i);
+        std::sort(nodes.begin(), nodes.end());
+      }
+
+    private:
+      /// If all nodes but @p hung are among those that this one follows.
+      void take_larger(const std::vector<std::pair<unsigned int, double>> &larger,
+                       const unsigned int                                  n,
+                       const unsigned int                                  hung)
+      {
+        for (unsigned int i = 0; i < n; ++i)
+          if (i != hung &&
+              std::none_of(larger.begin(), larger.end(), [&](const auto &master) { return master.first == nodes[i]; }))
+            return;
+        half = true;
+        for (unsigned int i = 0; i < std::min<std::size_t>(larger.size(), nodes.size()); ++i)
+          nodes[i] = larger[i].first;
+      }
+    };
   } // namespace
 
   struct MasterSearch::Tree
   {
     using Leaf = std::pair<dealii::BoundingBox<dim>, unsigned int>;
     decltype(dealii::pack_rtree(std::vector<Leaf>())) leaves;
+
+    /// Calls f for the leaves that meet @p box. (The iterators of such queries take memory for each.)
+    template <typename Function>
+    void for_each(const dealii::BoundingBox<dim> &box, const Function &f) const
+    {
+      leaves.query(boost::geometry::index::intersects(box), boost::make_function_output_iterator(f));
+    }
   };
 
   MasterSearch::MasterSearch(const SurfaceGeometry &master, const double tolerance, const bool segments)
@@ -32,54 +75,42 @@ namespace Nodus
       , tree_(std::make_unique<Tree>())
       , on_rim_(master.n_faces())
   {
-    const unsigned int degree = master.degree();
-    // The nodes of an edge, or those of the larger face's edge that it is half of.
-    const auto edge = [&](const SurfaceFace &face, const unsigned int e)
-    {
-      const unsigned int     n = degree + 1, first[4] = {0, degree, 0, n * degree}, step[4] = {n, n, 1, 1};
-      std::set<unsigned int> nodes;
-      for (unsigned int i = 0; i < n; ++i)
-        nodes.insert(face.nodes[first[e] + i * step[e]]);
-      for (unsigned int i = 0; i < n; ++i)
-        if (const auto *const hung = face.follower(first[e] + i * step[e]))
-        {
-          std::set<unsigned int> larger;
-          for (const auto &[node, weight] : hung->masters)
-            larger.insert(node);
-          nodes.erase(face.nodes[first[e] + i * step[e]]);
-          if (std::includes(larger.begin(), larger.end(), nodes.begin(), nodes.end()))
-            return std::make_pair(larger, true);
-          nodes.insert(face.nodes[first[e] + i * step[e]]);
-        }
-      return std::make_pair(nodes, false);
-    };
-    std::vector<Tree::Leaf>                                                    leaves;
-    std::map<std::set<unsigned int>, std::array<std::vector<unsigned int>, 2>> at_edge; // whole, half of it
+    const FaceShape         middle(master.shape_degree(), 0.5, 0.5);
+    std::vector<Tree::Leaf> leaves;
+    leaves.reserve(master.n_faces());
     for (unsigned int f = 0; f < master.n_faces(); ++f)
     {
-      const FaceGeometry centre = master.at(f, 0.5, 0.5);
+      const FaceGeometry centre(middle, master.shape_points(f));
+      const Vector3      area = master.face(f).orientation * centre.area_vector();
       centre_.push_back(centre.x);
-      centre_normal_.push_back(master.normal(f, 0.5, 0.5));
+      centre_normal_.push_back(area / area.norm());
       size_.push_back(std::sqrt(centre.area_vector().norm()));
-      leaves.emplace_back(face_box(master.face(f), degree, master.positions()), f);
-      for (unsigned int e = 0; e < 4; ++e)
-      {
-        const auto &[nodes, half] = edge(master.face(f), e);
-        at_edge[nodes][half].push_back(f);
-      }
+      leaves.emplace_back(face_box(master.face(f), master.degree(), master.positions()), f);
     }
-    for (unsigned int f = 0; f < master.n_faces(); ++f)
-      for (unsigned int e = 0; e < 4; ++e)
-      {
-        const auto &[nodes, half] = edge(master.face(f), e);
-        const auto &faces         = at_edge[nodes];
-        const auto  goes_on       = [&](const std::vector<unsigned int> &others) {
-          return std::any_of(
-              others.begin(), others.end(), [&](const unsigned int g) { return g != f && !falls_off(f, g); });
-        };
-        on_rim_[f][e] = !goes_on(faces[0]) && (half || !goes_on(faces[1]));
-      }
+    find_rims();
     tree_->leaves = dealii::pack_rtree(leaves);
+  }
+
+  void MasterSearch::find_rims()
+  {
+    std::vector<Edge> edges;
+    edges.reserve(4 * on_rim_.size());
+    for (unsigned int f = 0; f < on_rim_.size(); ++f)
+      for (unsigned int e = 0; e < 4; ++e)
+        edges.emplace_back(master_.face(f), master_.degree(), e);
+    for (unsigned int at = 0; at < edges.size(); ++at)
+    {
+      const Edge        &own     = edges[at];
+      const unsigned int f       = at / 4;
+      const auto         is_same = [&](const Edge &other)
+      { return other.nodes[0] == own.nodes[0] && other.nodes == own.nodes && !(other.half && own.half); };
+      const auto goes_on = [&](const unsigned int g)
+      { return g != f && std::any_of(&edges[4 * g], &edges[4 * g] + 4, is_same) && !falls_off(f, g); };
+      on_rim_[f][at % 4] =
+          std::none_of(own.nodes.begin(),
+                       std::find(own.nodes.begin(), own.nodes.end(), dealii::numbers::invalid_unsigned_int),
+                       [&](const unsigned int node) { return master_.any_at(node, goes_on); });
+    }
   }
 
   bool MasterSearch::falls_off(const unsigned int f, const unsigned int neighbour) const
@@ -136,16 +167,18 @@ namespace Nodus
                                           const double               part,
                                           const SelfContact::Seeker &seeker) const
   {
-    namespace bgi = boost::geometry::index;
     // Boxes in ascending distance, of those that may be partners: most that are nearby are its own neighbours.
     thread_local std::vector<std::pair<double, unsigned int>> faces;
     dealii::BoundingBox<dim>                                  around({p, p});
     around.extend(reach);
     faces.clear();
-    for (auto leaf = tree_->leaves.qbegin(bgi::intersects(around)); leaf != tree_->leaves.qend(); ++leaf)
-      if (const unsigned int f = leaf->second;
-          centre_normal_[f] * normal <= SelfContact::averted_cosine && seeker.may_meet(f, p, normal))
-        faces.emplace_back(squared_distance(leaf->first, p), f);
+    tree_->for_each(around,
+                    [&](const Tree::Leaf &leaf)
+                    {
+                      const unsigned int f = leaf.second;
+                      if (centre_normal_[f] * normal <= SelfContact::averted_cosine && seeker.may_meet(f, p, normal))
+                        faces.emplace_back(squared_distance(leaf.first, p), f);
+                    });
     std::sort(faces.begin(), faces.end());
     Closest best{{}, reach * reach};
     for (const auto &[least, f] : faces)
@@ -182,12 +215,22 @@ namespace Nodus
 
   void MasterSearch::candidates(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &faces) const
   {
-    namespace bgi = boost::geometry::index;
     faces.clear();
-    for (auto leaf = tree_->leaves.qbegin(bgi::intersects(box)); leaf != tree_->leaves.qend(); ++leaf)
-      faces.push_back(leaf->second);
+    tree_->for_each(box, [&](const Tree::Leaf &leaf) { faces.push_back(leaf.second); });
     std::sort(faces.begin(), faces.end());
   }
+
+  namespace
+  {
+    bool have_same_nodes(const std::vector<SurfaceFace> &a, const std::vector<SurfaceFace> &b)
+    {
+      return std::equal(a.begin(),
+                        a.end(),
+                        b.begin(),
+                        b.end(),
+                        [](const SurfaceFace &f, const SurfaceFace &g) { return f.nodes == g.nodes; });
+    }
+  } // namespace
 
   ContactGeometry::ContactGeometry(const std::vector<ContactPairParameters> &pairs,
                                    const ContactSurfaces                    &surfaces,
@@ -199,7 +242,10 @@ namespace Nodus
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
       slave.emplace_back(surfaces.slave_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
-      master.emplace_back(surfaces.master_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
+      if (pairs[p].self_contact && have_same_nodes(surfaces.slave_faces(p), surfaces.master_faces(p)))
+        master.push_back(slave[p]);
+      else
+        master.emplace_back(surfaces.master_faces(p), surfaces.degree(), positions, surfaces.fixed(), pairs[p].surface);
       search.emplace_back(master[p],
                           pairs[p].projection_tolerance,
                           pairs[p].scheme == ContactPairParameters::Scheme::averaged &&

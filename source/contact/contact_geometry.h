@@ -58,6 +58,7 @@ namespace Nodus
     void candidates(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &faces) const;
 
   private:
+    void find_rims();
     /// Whether there is an edge between two faces, beyond which the neighbour leads down: what slides over it leaves
     /// the face as at a rim.
     bool       falls_off(unsigned int f, unsigned int neighbour) const;

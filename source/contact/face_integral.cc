@@ -1,9 +1,13 @@
 #include "contact/face_integral.h"
+#include "parallel/sparse_exchange.h"
 
 #include <deal.II/base/quadrature_lib.h>
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <map>
+#include <set>
 #include <utility>
 
 namespace Nodus
@@ -20,6 +24,32 @@ namespace Nodus
       Vector3               offset; ///< of a smoothed surface
       RigidPart             rigid;
     };
+
+    /// A point of a rule on whole faces.
+    struct WholePoint
+    {
+      double                weight;
+      FaceShape             shape;
+      std::array<double, 9> hats;
+    };
+
+    /// Points of a rule that is exact for areas.
+    const std::vector<WholePoint> &whole_points(const unsigned int degree)
+    {
+      const auto make = [](const unsigned int d)
+      {
+        const dealii::QGauss<2> gauss(4);
+        std::vector<WholePoint> points;
+        for (unsigned int q = 0; q < gauss.size(); ++q)
+        {
+          const double xi = gauss.point(q)[0], eta = gauss.point(q)[1];
+          points.push_back({gauss.weight(q), FaceShape(d, xi, eta), AveragedJump::hats(d, xi, eta)});
+        }
+        return points;
+      };
+      static const std::vector<WholePoint> points[] = {make(1), make(2)};
+      return points[degree - 1];
+    }
 
     Partner meshed_partner(const ContactPairParameters &pair,
                            const SurfaceGeometry       &master,
@@ -164,15 +194,12 @@ namespace Nodus
 
   void FaceIntegral::take_exact_areas()
   {
-    static const dealii::QGauss<2> gauss(4);
-    const unsigned int             degree = slave_.degree();
     Column exact = Column::Zero(m_), full = Column::Zero(m_); // areas of the dual functions, hats
-    for (unsigned int q = 0; q < gauss.size(); ++q)
+    for (const WholePoint &point : whole_points(slave_.degree()))
     {
-      const FaceShape shape(degree, gauss.point(q)[0], gauss.point(q)[1]);
-      const double    area = gauss.weight(q) * element(shape);
-      exact += area * of_slaves(shape.value);
-      full += area * of_slaves(AveragedJump::hats(degree, gauss.point(q)[0], gauss.point(q)[1]));
+      const double area = point.weight * element(point.shape);
+      exact += area * of_slaves(point.shape.value);
+      full += area * of_slaves(point.hats);
     }
     for (unsigned int a = 0; a < m_; ++a)
     {
@@ -187,5 +214,34 @@ namespace Nodus
       }
       row[n_columns_ - 1] = part_ * exact[a] + (1. - part_) * full[a];
     }
+  }
+
+  std::vector<unsigned int> slaves_of(const ContactSurfaces &surfaces, const FaceRows &face)
+  {
+    std::vector<unsigned int> slaves;
+    for (const DoFIndex dof : face.slaves)
+      slaves.push_back(surfaces.slave_number(face.pair, surfaces.node(dof)));
+    return slaves;
+  }
+
+  std::vector<FaceRows> collect(const ContactSurfaces &surfaces, std::vector<FaceRows> mine)
+  {
+    std::map<unsigned int, std::vector<FaceRows>> outgoing;
+    for (const FaceRows &face : mine)
+    {
+      std::set<unsigned int> owners;
+      for (const unsigned int k : slaves_of(surfaces, face))
+        owners.insert(surfaces.site_owner(k));
+      for (const unsigned int owner : owners)
+        outgoing[owner].push_back(face);
+    }
+    mine.clear();
+    for (auto &[other, part] : sparse_exchange(surfaces.layout().communicator, outgoing))
+      std::move(part.begin(), part.end(), std::back_inserter(mine));
+    std::sort(mine.begin(),
+              mine.end(),
+              [](const FaceRows &a, const FaceRows &b)
+              { return std::make_pair(a.pair, a.number) < std::make_pair(b.pair, b.number); });
+    return mine;
   }
 } // namespace Nodus

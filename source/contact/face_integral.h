@@ -29,6 +29,12 @@ namespace Nodus
     }
   };
 
+  /// Slave nodes of a face.
+  std::vector<unsigned int> slaves_of(const ContactSurfaces &surfaces, const FaceRows &face);
+  /// Whoever owns a node sums over its faces: sends @p mine to all that own a slave node of them. @returns those of
+  /// this rank's nodes, in an order that does not depend on the ranks. Collective.
+  std::vector<FaceRows> collect(const ContactSurfaces &surfaces, std::vector<FaceRows> mine);
+
   /// Integrates one slave face of the averaged scheme over its points: what it adds to the rows of its slave nodes.
   class FaceIntegral
   {

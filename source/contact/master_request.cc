@@ -141,11 +141,14 @@ namespace Nodus
 
   Box face_box(const SurfaceFace &face, const unsigned int degree, const std::vector<Point> &x)
   {
-    std::vector<Point> corners;
+    const FaceGeometry      centre(face, FaceShape(degree, 0.5, 0.5), x);
+    std::pair<Point, Point> corners(centre.x, centre.x);
     for (const unsigned int n : face.nodes)
-      corners.push_back(x[n]);
-    const FaceGeometry centre(face, FaceShape(degree, 0.5, 0.5), x);
-    corners.push_back(centre.x);
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        corners.first[c]  = std::min(corners.first[c], x[n][c]);
+        corners.second[c] = std::max(corners.second[c], x[n][c]);
+      }
     Box box(corners);
     box.extend(std::sqrt(centre.area_vector().norm()) / 8);
     return box;

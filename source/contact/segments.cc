@@ -167,7 +167,9 @@ namespace Nodus
         {
           const auto      corner = cell_corners(slave_, f_, cell);
           const CellPlane plane(corner, slave_.face(f_).orientation);
-          const FlatFace  slave_facet = facet(slave_, f_, plane);
+          if (!find_candidates(corner, plane))
+            continue;
+          const FlatFace slave_facet = facet(slave_, f_, plane);
           find_overlaps(corner, plane);
           for (const Overlap &overlap : overlaps())
             if ((self_ == nullptr || self_->is_slave(f_, overlap.m)) && !add_points(cell, plane, slave_facet, overlap))
@@ -179,7 +181,13 @@ namespace Nodus
         }
         if (points_.empty())
           return {};
-        return {covered_ * covered_ / (face_area_ * twice_counted_), twice_counted_ / covered_};
+        double area = 0.;
+        for (unsigned int cell = 0; cell < n_cells(degree_); ++cell)
+        {
+          const auto corner = cell_corners(slave_, f_, cell);
+          area += Shadow(corner, CellPlane(corner, slave_.face(f_).orientation)).polygon.area();
+        }
+        return {covered_ * covered_ / (area * twice_counted_), twice_counted_ / covered_};
       }
 
     private:
@@ -190,22 +198,45 @@ namespace Nodus
         return overlaps;
       }
 
-      /// With all master cells that face the slave cell.
-      void find_overlaps(const std::array<Point, 4> &corner, const CellPlane &plane)
+      /// Master faces that the present slave cell may overlap.
+      static std::vector<unsigned int> &candidates()
       {
         thread_local std::vector<unsigned int> candidates;
-        const Shadow                           window(corner, plane);
-        const double                           cell_area = window.polygon.area();
-        const Vector3                          middle    = cell_middle(corner);
-        face_area_ += cell_area;
+        return candidates;
+      }
+
+      /// @returns whether there are some that the slave cell is the slave of: most of a surface that touches itself has
+      /// none.
+      bool find_candidates(const std::array<Point, 4> &corner, const CellPlane &plane)
+      {
+        std::vector<unsigned int> &faces = candidates();
+        if (self_ == nullptr)
+        {
+          search_.candidates(swept_box(corner, plane.normal, reach_, reach_), faces);
+          return !faces.empty();
+        }
+        const double most_visible = self_->most_visible(f_);
+        search_.candidates(swept_box(corner, plane.normal, reach_, std::min(reach_, most_visible)), faces);
+        faces.erase(std::remove_if(faces.begin(),
+                                   faces.end(),
+                                   [&](const unsigned int m) {
+                                     return !self_->may_touch(f_, m) ||
+                                            self_->is_beyond(m, plane.origin, plane.normal, most_visible);
+                                   }),
+                    faces.end());
+        return std::any_of(faces.begin(), faces.end(), [&](const unsigned int m) { return self_->is_slave(f_, m); });
+      }
+
+      /// With all of these that face the slave cell.
+      void find_overlaps(const std::array<Point, 4> &corner, const CellPlane &plane)
+      {
+        const Shadow  window(corner, plane);
+        const double  cell_area = window.polygon.area();
+        const Vector3 middle    = cell_middle(corner);
         overlaps().clear();
-        const double behind = self_ == nullptr ? reach_ : std::min(reach_, self_->most_visible(f_));
-        search_.candidates(swept_box(corner, plane.normal, reach_, behind), candidates);
-        for (const unsigned int m : candidates)
-          if (self_ == nullptr ||
-              (self_->may_touch(f_, m) && !self_->is_beyond(m, plane.origin, plane.normal, self_->most_visible(f_))))
-            for (unsigned int cell = 0; cell < n_cells(degree_); ++cell)
-              add_overlap(window, plane, middle, cell_area, m, cell);
+        for (const unsigned int m : candidates())
+          for (unsigned int cell = 0; cell < n_cells(degree_); ++cell)
+            add_overlap(window, plane, middle, cell_area, m, cell);
       }
 
       /// Unless it is next to nothing, or the cells do not face each other.
@@ -324,7 +355,7 @@ namespace Nodus
       const unsigned int        f_, degree_;
       std::vector<MortarPoint> &points_;
       SegmentTrace             &trace_;
-      double                    face_area_ = 0., covered_ = 0., twice_counted_ = 0.; ///< with the part, with its square
+      double                    covered_ = 0., twice_counted_ = 0.; ///< with the part, with its square
     };
   } // namespace
 

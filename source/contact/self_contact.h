@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace Nodus
@@ -31,13 +32,13 @@ namespace Nodus
     /// left to another pair, or to none.
     bool may_touch(unsigned int f, unsigned int m) const
     {
-      return !meet(slave_nodes_[f], master_nodes_[m]) &&
+      return !meet(slave_side_.nodes(f), master_side_.nodes(m)) &&
              !meet_elsewhere(slave_.face(f).elsewhere, master_.face(m).elsewhere);
     }
     /// Whether @p f is the slave of @p m where they touch (eq. O2); one of both is.
     bool is_slave(const unsigned int f, const unsigned int m) const
     {
-      return slave_roles_[f].yields_to(master_roles_[m]);
+      return slave_side_.roles[f].yields_to(master_side_.roles[m]);
     }
     /// Depth up to which a point of master face @p m counts behind a point of slave face @p f [length].
     double visible(unsigned int f, double xi, double eta, unsigned int m, double master_xi, double master_eta) const
@@ -49,10 +50,7 @@ namespace Nodus
     /// @p depth: then none of it counts there.
     bool is_beyond(unsigned int m, const Point &x, const Vector3 &n, double depth) const;
     /// The largest depth up to which anything counts behind slave face @p f [length].
-    double most_visible(const unsigned int f) const
-    {
-      return most_visible_[f];
-    }
+    double most_visible(unsigned int f) const;
     /// Part that a cell at this distance counts with: it fades in as surfaces come near (eq. O3).
     Fading near_part(const double distance) const
     {
@@ -84,13 +82,15 @@ namespace Nodus
       }
 
     private:
-      const SelfContact               &rules_;
-      unsigned int                     face_;
-      const std::vector<unsigned int> *faces_; ///< or the one
-      double                           thickness_;
+      const SelfContact                        &rules_;
+      std::vector<unsigned int>::const_iterator begin_, end_;     ///< faces of a node
+      unsigned int face_ = dealii::numbers::invalid_unsigned_int; ///< or the one that it is on
+      double       thickness_;
     };
 
   private:
+    /// Cells through the wall behind one of its four corners.
+    static double cells_through(const SurfaceFace &face, const std::vector<SurfaceNode> &nodes, unsigned int corner);
     /// What decides who is slave, in the order of the members (eq. O2).
     struct Role
     {
@@ -104,24 +104,43 @@ namespace Nodus
 
       bool yields_to(const Role &other) const;
     };
-    using Nodes = std::vector<unsigned int>; ///< sorted
+    /// Of a face in ascending order, with those that its hanging ones follow: begin and end.
+    using Nodes = std::pair<const unsigned int *, const unsigned int *>;
+    /// The faces of a side.
+    struct Side
+    {
+      Side(const ContactSurfaces &surfaces, unsigned int pair, const SurfaceGeometry &geometry);
 
-    static bool meet(const Nodes &a, const Nodes &b);
-    static Role role(const ContactSurfaces &surfaces, unsigned int pair, const SurfaceFace &face);
-    /// Of a face, with those that its hanging ones follow.
-    static Nodes nodes(const SurfaceFace &face);
-    double       thickness(const SurfaceGeometry &side, const unsigned int f, const double xi, const double eta) const
+      Nodes nodes(const unsigned int f) const
+      {
+        return {all_nodes.data() + start[f], all_nodes.data() + start[f + 1]};
+      }
+      std::vector<Role>         roles;
+      std::vector<unsigned int> all_nodes, start; ///< of each face from start on
+    };
+
+    static bool meet(const Nodes &a, const Nodes &b)
+    {
+      for (const unsigned int *i = a.first, *j = b.first; i != a.second && j != b.second;)
+        if (*i == *j)
+          return true;
+        else
+          ++(*i < *j ? i : j);
+      return false;
+    }
+    static Role
+           role(const ContactSurfaces &surfaces, unsigned int pair, const SurfaceFace &face, const FaceShape &middle);
+    void   list_faces_of_nodes();
+    double thickness(const SurfaceGeometry &side, const unsigned int f, const double xi, const double eta) const
     {
       return thickness(side.face(f), surfaces_.nodes(), side.positions(), side.position(f, xi, eta), xi, eta);
     }
 
-    const ContactSurfaces                 &surfaces_;
-    const SurfaceGeometry                 &slave_, &master_;
-    double                                 reach_;
-    std::vector<Role>                      slave_roles_, master_roles_;
-    std::vector<Nodes>                     slave_nodes_, master_nodes_;
-    std::vector<double>                    most_visible_;
-    std::vector<std::vector<unsigned int>> faces_of_node_; ///< slave faces
+    const ContactSurfaces    &surfaces_;
+    const SurfaceGeometry    &slave_, &master_;
+    const double              reach_;
+    const Side                slave_side_, master_side_;
+    std::vector<unsigned int> faces_of_nodes_, first_face_; ///< slave faces; those of each node from first_face_ on
   };
 } // namespace Nodus
 

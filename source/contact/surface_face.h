@@ -136,11 +136,30 @@ namespace Nodus
   {
     Point   x;
     Vector3 d_xi, d_eta;
-    FaceGeometry(const SurfaceFace &face, const FaceShape &shape, const std::vector<Point> &positions);
+    FaceGeometry(const SurfaceFace &face, const FaceShape &shape, const std::vector<Point> &positions)
+    {
+      for (unsigned int n = 0; n < shape.n; ++n)
+        add(shape, n, positions[face.nodes[n]]);
+    }
     /// @p points: as many positions as the shape has functions.
-    FaceGeometry(const FaceShape &shape, const Point *points);
+    FaceGeometry(const FaceShape &shape, const Point *const points)
+    {
+      for (unsigned int n = 0; n < shape.n; ++n)
+        add(shape, n, points[n]);
+    }
     /// x_xi x x_eta, length = surface element.
-    Vector3 area_vector() const;
+    Vector3 area_vector() const
+    {
+      return dealii::cross_product_3d(d_xi, d_eta);
+    }
+
+  private:
+    void add(const FaceShape &shape, const unsigned int n, const Point &p)
+    {
+      x += shape.value[n] * p;
+      d_xi += shape.d_xi[n] * p;
+      d_eta += shape.d_eta[n] * p;
+    }
   };
 } // namespace Nodus
 

@@ -89,6 +89,7 @@ namespace Nodus
       node_shapes_.emplace_back(degree_, 1. / degree_ * (n % (degree_ + 1)), 1. / degree_ * (n / (degree_ + 1)));
 
     unit_.resize(faces_.size() * n_face_nodes);
+    weighted_.resize(unit_.size());
     occurrence_.resize(unit_.size());
     start_.assign(positions_.size() + 1, 0);
     for (const SurfaceFace &face : faces_)
@@ -100,9 +101,12 @@ namespace Nodus
     for (unsigned int f = 0; f < faces_.size(); ++f)
       for (unsigned int n = 0; n < n_face_nodes; ++n)
       {
-        const Vector3 area = faces_[f].orientation * FaceGeometry(faces_[f], node_shapes_[n], positions_).area_vector();
-        const unsigned int here                 = f * n_face_nodes + n;
-        unit_[here]                             = area / area.norm();
+        const FaceGeometry geometry(faces_[f], node_shapes_[n], positions_);
+        const Vector3      area = faces_[f].orientation * geometry.area_vector();
+        const unsigned int here = f * n_face_nodes + n;
+        unit_[here]             = area / area.norm();
+        weighted_[here] =
+            faces_[f].normal_share[n] / (geometry.d_xi.norm_square() * geometry.d_eta.norm_square()) * area;
         occurrence_[next[faces_[f].nodes[n]]++] = here;
       }
 
@@ -124,21 +128,11 @@ namespace Nodus
         g(occurrence_[i], fading);
   }
 
-  Vector3 SurfaceGeometry::weighted_normal(const unsigned int at) const
-  {
-    const SurfaceFace &face = faces_[at / node_shapes_.size()];
-    const unsigned int n    = at % node_shapes_.size();
-    const FaceGeometry geometry(face, node_shapes_[n], positions_);
-    return face.normal_share[n] * face.orientation / (geometry.d_xi.norm_square() * geometry.d_eta.norm_square()) *
-           geometry.area_vector();
-  }
-
   Vector3 SurfaceGeometry::sum_of_normals(const unsigned int node, const unsigned int own) const
   {
     Vector3 sum;
-    for_faces(node,
-              own,
-              [&](const unsigned int other, const Fading &fading) { sum += fading.part * weighted_normal(other); });
+    for_faces(
+        node, own, [&](const unsigned int other, const Fading &fading) { sum += fading.part * weighted_[other]; });
     return sum;
   }
 
@@ -247,7 +241,7 @@ namespace Nodus
               {
                 if (fading.slope > 0.)
                 {
-                  const Vector3 direction = fading.slope * (factor * weighted_normal(other));
+                  const Vector3 direction = fading.slope * (factor * weighted_[other]);
                   add_component_derivative(other, unit_[own], direction, derivative);
                   add_component_derivative(own, unit_[other], direction, derivative);
                 }

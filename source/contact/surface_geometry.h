@@ -126,6 +126,19 @@ namespace Nodus
     /// most: what facets cut off from a curved surface [length]. Of the faces of this rank.
     double bulge() const;
 
+    /// Whether this is a copy of another one, or the other way round.
+    bool has_faces_of(const SurfaceGeometry &other) const
+    {
+      return &faces_ == &other.faces_;
+    }
+    /// Whether @p condition(face) is true for any of the faces at a node.
+    template <typename Condition>
+    bool any_at(const unsigned int node, const Condition &condition) const
+    {
+      return std::any_of(occurrence_.begin() + start_[node],
+                         occurrence_.begin() + start_[node + 1],
+                         [&](const unsigned int at) { return condition(at / node_shapes_.size()); });
+    }
     /// Calls f(node, part) for the nodes around a node of the surface, itself among them; the parts add up to 1. They
     /// are those beside it on the faces that meet there and look along @p normal: those beyond an edge count less and
     /// less and not at all from 60 degrees on.
@@ -158,7 +171,8 @@ namespace Nodus
     const std::vector<Point>                 &positions_;
     const std::vector<std::array<bool, dim>> &fixed_; ///< components of each node
     unsigned int                              degree_, shape_degree_;
-    std::vector<Vector3>                      unit_, nodal_normals_; ///< per face and node: of the face, averaged
+    /// Per face and node: of the face, the same with its weight in the average, averaged.
+    std::vector<Vector3> unit_, weighted_, nodal_normals_;
     /// Where each surface node occurs: face * nodes per face + n, from start_[node] on.
     std::vector<unsigned int> start_, occurrence_;
     std::vector<FaceShape>    node_shapes_; ///< of the displacement at the nodes of a face
@@ -170,8 +184,6 @@ namespace Nodus
     /// that of @p own. Both are faces at a node of theirs: indices into unit_.
     template <typename Function>
     void for_faces(unsigned int node, unsigned int own, const Function &g) const;
-    /// Normal of a face at a node of its own, with its weight.
-    Vector3 weighted_normal(unsigned int at) const;
     /// Sum of those around a node.
     Vector3 sum_of_normals(unsigned int node, unsigned int own) const;
     /// The unit vector of that, in the plane of symmetry where the node lies on one; zero when there are no such faces.

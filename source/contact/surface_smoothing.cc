@@ -16,26 +16,45 @@ namespace Nodus
     /// The corners as nodes of the quadratic face.
     constexpr unsigned int corners[4] = {0, 2, 6, 8};
 
-    /// How the middle of an edge rises above its chord, which turns by asin(rise / length) to either end's tangent, and
-    /// the derivatives of that.
+    /// The arc over a chord that meets these normals at its ends: it turns by asin(rise / length) to either end's
+    /// tangent.
     struct Arc
     {
-      Arc(const Vector3 &chord, const Vector3 &normal_a, const Vector3 &normal_b)
+      Arc(const Vector3 &chord_, const Vector3 &normal_a, const Vector3 &normal_b)
+          : chord(chord_)
+          , sum(normal_a + normal_b)
+          , bend(normal_b - normal_a)
+          , length(chord.norm())
+          , sine(std::clamp(0.5 * (chord * bend) / length, -0.7, 0.7))
+          , angle(std::asin(sine))
+          , half_tangent(std::tan(0.5 * angle))
+          // sagitta = length/2 tan(angle/2), sin(angle) = q/length, q = chord . bend / 2
+          , sagitta(0.5 * length * half_tangent)
       {
-        const Vector3 sum = normal_a + normal_b, m = sum / sum.norm(), bend = normal_b - normal_a;
-        const double  length = chord.norm(), sine = std::clamp(0.5 * (chord * bend) / length, -0.7, 0.7);
-        const double  angle = std::asin(sine), half_tangent = std::tan(0.5 * angle);
-        // sagitta = length/2 tan(angle/2), sin(angle) = q/length, q = chord . bend / 2
-        const double sagitta   = 0.5 * length * half_tangent;
-        const double to_q      = 0.25 * (1. + half_tangent * half_tangent) / std::cos(angle);
-        const double to_length = 0.5 * half_tangent - to_q * sine;
-        rise                   = sagitta * m;
-        to_chord               = dealii::outer_product(m, 0.5 * to_q * bend + to_length / length * chord);
-        const auto turn = sagitta * unit_derivative(sum), bending = 0.5 * to_q * dealii::outer_product(m, chord);
-        to_normal_a = turn - bending;
-        to_normal_b = turn + bending;
       }
-      Vector3                rise;
+      /// How the middle rises above the chord.
+      Vector3 rise() const
+      {
+        return sagitta * (sum / sum.norm());
+      }
+      Vector3 chord, sum, bend;
+      double  length, sine, angle, half_tangent, sagitta;
+    };
+
+    /// Derivatives of the rise.
+    struct VariedArc
+    {
+      explicit VariedArc(const Arc &arc)
+      {
+        const Vector3 m         = arc.sum / arc.sum.norm();
+        const double  to_q      = 0.25 * (1. + arc.half_tangent * arc.half_tangent) / std::cos(arc.angle);
+        const double  to_length = 0.5 * arc.half_tangent - to_q * arc.sine;
+        to_chord                = dealii::outer_product(m, 0.5 * to_q * arc.bend + to_length / arc.length * arc.chord);
+        const auto turn         = arc.sagitta * unit_derivative(arc.sum);
+        const auto bending      = 0.5 * to_q * dealii::outer_product(m, arc.chord);
+        to_normal_a             = turn - bending;
+        to_normal_b             = turn + bending;
+      }
       dealii::Tensor<2, dim> to_chord, to_normal_a, to_normal_b;
     };
 
@@ -60,7 +79,7 @@ namespace Nodus
     if (!hung)
       return Vector3();
     const unsigned int a = hung->masters[0].first, b = hung->masters[1].first;
-    return Arc(positions_[b] - positions_[a], end_normal(f, n, a), end_normal(f, n, b)).rise;
+    return Arc(positions_[b] - positions_[a], end_normal(f, n, a), end_normal(f, n, b)).rise();
   }
 
   bool SurfaceGeometry::is_half(const unsigned int f, const unsigned int end, const unsigned int other) const
@@ -76,9 +95,11 @@ namespace Nodus
     for (const auto &[end, other] : {std::make_pair(a, b), std::make_pair(b, a)})
       if (is_half(f, end, other))
         return 0.75 * corner_offset(f, end);
+    if (faces_[f].hanging.empty() && nodal_normal(f, a) == nodal_normal(f, b)) // as on most of what is flat
+      return Vector3();
     const Vector3 offset_a = corner_offset(f, a), offset_b = corner_offset(f, b);
     const Vector3 chord = positions_[faces_[f].nodes[b]] + offset_b - positions_[faces_[f].nodes[a]] - offset_a;
-    return 0.5 * (offset_a + offset_b) + Arc(chord, nodal_normal(f, a), nodal_normal(f, b)).rise;
+    return 0.5 * (offset_a + offset_b) + Arc(chord, nodal_normal(f, a), nodal_normal(f, b)).rise();
   }
 
   void SurfaceGeometry::smooth()
@@ -124,7 +145,7 @@ namespace Nodus
     if (!hung)
       return;
     const unsigned int own = 4 * f + n, a = hung->masters[0].first, b = hung->masters[1].first;
-    const Arc          arc(positions_[b] - positions_[a], end_normal(f, n, a), end_normal(f, n, b));
+    const VariedArc    arc({positions_[b] - positions_[a], end_normal(f, n, a), end_normal(f, n, b)});
     add(derivative, b, factor * arc.to_chord);
     add(derivative, a, -factor * arc.to_chord);
     if (averaged_unit(a, own) != Vector3())
@@ -148,8 +169,8 @@ namespace Nodus
         corner_offset_derivative(f, end, 0.75 * identity, derivative);
         return derivative;
       }
-    const Vector3 chord = positions_[node_b] + corner_offset(f, b) - positions_[node_a] - corner_offset(f, a);
-    const Arc     arc(chord, nodal_normal(f, a), nodal_normal(f, b));
+    const Vector3   chord = positions_[node_b] + corner_offset(f, b) - positions_[node_a] - corner_offset(f, a);
+    const VariedArc arc({chord, nodal_normal(f, a), nodal_normal(f, b)});
     add(derivative, node_b, arc.to_chord);
     add(derivative, node_a, -arc.to_chord);
     corner_offset_derivative(f, a, 0.5 * identity - arc.to_chord, derivative);

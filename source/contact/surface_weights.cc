@@ -39,20 +39,20 @@ namespace Nodus
 
     const auto measure = [&](const unsigned int p) -> const std::vector<Point> &
     { return pairs[p].surface_measure == ContactPairParameters::SurfaceMeasure::current ? x : X; };
-    // Adds a point of a face to the nodal areas; as a point with all nodes of the face when asked to.
-    const auto add =
-        [&](const SurfaceFace &face, const FaceShape &shape, const double weight, const unsigned int p) -> ContactPoint
+    // Adds a point of a face to the nodal areas and, at a site or as it is, to the points, with all nodes of the face.
+    const auto add = [&](const SurfaceFace &face,
+                         const FaceShape   &shape,
+                         const double       weight,
+                         const unsigned int p,
+                         const bool         is_point,
+                         const unsigned int site)
     {
-      ContactPoint point{
-          weight * FaceGeometry(face, shape, measure(p)).area_vector().norm(), {}, {}, face.owner, no_site};
-      const auto values = face.slave_values(shape.value);
+      const double area   = weight * FaceGeometry(face, shape, measure(p)).area_vector().norm();
+      const auto   values = face.slave_values(shape.value);
       for (unsigned int j = 0; j < face.slaves.size(); ++j)
-      {
-        area_[face.slaves[j]] += point.weight * values[j];
-        point.slaves.push_back(face.slaves[j]);
-        point.shape.push_back(values[j]);
-      }
-      return point;
+        area_[face.slaves[j]] += area * values[j];
+      if (is_point)
+        points_.push_back({area, face.slaves, {values.begin(), values.begin() + face.slaves.size()}, face.owner, site});
     };
 
     for (unsigned int p = 0; p < pairs.size(); ++p)
@@ -65,21 +65,17 @@ namespace Nodus
         shapes.emplace_back(surfaces.degree(), q[0], q[1]);
       for (const auto &face : surfaces.slave_faces(p))
         for (unsigned int q = 0; q < rule.size(); ++q)
-        {
-          ContactPoint point = add(face, shapes[q], rule.weight(q), p);
-          if (consistent(p))
-            points_.push_back(std::move(point));
-        }
+          add(face, shapes[q], rule.weight(q), p, consistent(p), no_site);
     }
     for (unsigned int s = slaves.size(); s < surfaces.n_sites(); ++s)
     {
-      const SlavePoint &site  = surfaces.point(s);
-      ContactPoint      point = add(surfaces.slave_faces(site.pair)[site.face],
-                               FaceShape(surfaces.degree(), site.xi, site.eta),
-                               site.weight,
-                               site.pair);
-      point.site              = s;
-      points_.push_back(std::move(point));
+      const SlavePoint &site = surfaces.point(s);
+      add(surfaces.slave_faces(site.pair)[site.face],
+          FaceShape(surfaces.degree(), site.xi, site.eta),
+          site.weight,
+          site.pair,
+          true,
+          s);
     }
 
     surfaces.slave_exchange().update(area_);

@@ -73,8 +73,11 @@ namespace Nodus
                            face.slaves.end(),
                            [&](const unsigned int k) { return k < of_site_.size() && active[k]; }))
             continue;
-          foreign_.push_back(std::make_unique<AveragedJump::Face>(AveragedJump::Face{p, f, {}, {}, {}}));
-          AveragedJump::find_points(pairs_[p], geometry_, rule, *foreign_.back());
+          auto foreign = std::make_unique<AveragedJump::Face>(AveragedJump::Face{p, f, {}, {}, {}});
+          AveragedJump::find_points(pairs_[p], geometry_, rule, *foreign);
+          if (foreign->points.empty())
+            continue;
+          foreign_.push_back(std::move(foreign));
           note(*foreign_.back(), active);
         }
       }
