@@ -97,9 +97,9 @@ namespace Nodus
 
   void Equilibrium::begin_attempt(const MergedLoops &merged)
   {
-    merged_   = merged;
-    singular_ = false;
-    guess_    = false;
+    merged_    = merged;
+    singular_  = false;
+    predicted_ = guess_ = false;
     if (arc_length_.acts() && increment_.end != increment_.begin) // of the attempt before
     {
       increment_.end = increment_.begin;
@@ -108,11 +108,11 @@ namespace Nodus
     model_.contact->begin_attempt();
   }
 
-  bool Equilibrium::predict()
+  void Equilibrium::predict()
   {
     const State &last = states_.committed;
     if (last.motion_time == 0. || increment_.begins_interval() || increment_.on_new_mesh() || increment_.arc > 0.)
-      return false;
+      return;
     u_                = states_.now.unknowns.block(0);
     constraints_      = &model_.boundary_conditions->increment_constraints(u_);
     const double part = increment_.duration() / last.motion_time;
@@ -123,12 +123,11 @@ namespace Nodus
     u += motion;
     model_.rigid_bodies.go_on(part);
     model_.rigid_bodies.move(u);
-    guess_ = model_.contact->visible_part(last.unknowns.block(0), u) == 1.;
+    predicted_ = guess_ = model_.contact->visible_part(last.unknowns.block(0), u) == 1.;
     if (guess_)
-      return true;
+      return;
     u                 = last.unknowns.block(0);
     states_.now.rigid = last.rigid;
-    return false;
   }
 
   void Equilibrium::keep_motion(const bool guides)
@@ -363,6 +362,10 @@ namespace Nodus
     const double part = model_.contact->visible_part(iterate_.unknowns.block(0), states_.now.unknowns.block(0));
     if (part == 1.)
       return;
+    if (predicted_)
+      throw SolverFailure("the motion of the last increment leads astray: from there a correction goes through the "
+                          "other surface",
+                          SolverFailure::Kind::newton_stalled);
     journal_.count(Remedy::limited_step);
     journal_.console.remark(
         text("the correction would take bodies through each other unseen: ", part, " of it is taken"));

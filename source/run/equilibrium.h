@@ -70,9 +70,14 @@ namespace Nodus
     }
 
     /// The attempt starts where the motion of the last increment leads in the time of this one, prescribed
-    /// displacements where they are to be. @returns false where there is no such motion in this interval, or where it
-    /// leads through another surface: then nothing changes. Collective.
-    bool predict();
+    /// displacements where they are to be. Nothing changes where there is no such motion in this interval, or where it
+    /// leads through another surface. Collective.
+    void predict();
+    /// Whether the attempt at hand started so.
+    bool predicted() const
+    {
+      return predicted_;
+    }
     /// The motion of the increment, which has been found, is what the next one goes on along, if it @p guides that.
     void keep_motion(bool guides);
 
@@ -186,7 +191,8 @@ namespace Nodus
     std::string cycling_;
     DoFIndex    null_pivot_        = dealii::numbers::invalid_dof_index;
     bool        singular_          = false;
-    bool        guess_             = false; ///< predicted, and not corrected yet
+    bool        predicted_         = false; ///< the attempt started along the motion of the last increment
+    bool        guess_             = false; ///< likewise, and nothing is corrected yet
     bool        unstable_          = false;
     bool        scattered_         = false; ///< an iterate is far from balance
     bool        motions_unknown_   = false; ///< an interval begins

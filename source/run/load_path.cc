@@ -165,9 +165,10 @@ namespace Nodus
   /// on a wall turns about where it does. Where iterates are not stable, once before, after a few halvings.
   bool LoadPath::may_relax(const SolverFailure::Kind failure) const
   {
-    using Kind        = SolverFailure::Kind;
-    const bool newton = failure == Kind::newton_stalled || failure == Kind::newton_limit;
-    const bool loop   = failure == Kind::status_cycle || failure == Kind::geometry_cycle || failure == Kind::loop_limit;
+    using Kind = SolverFailure::Kind;
+    const bool newton =
+        failure == Kind::newton_stalled || failure == Kind::newton_lost || failure == Kind::newton_limit;
+    const bool loop = failure == Kind::status_cycle || failure == Kind::geometry_cycle || failure == Kind::loop_limit;
     const bool last = !parts_.path.may_cut_back(), early = !relaxed_ && cut_backs_ >= patient_halvings;
     return !relaxing_ && parts_.strategy.may_relax() && (newton || loop) && (last || (unstable_ && early));
   }

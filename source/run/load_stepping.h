@@ -16,6 +16,7 @@ namespace Nodus
     double       begin = 0., end = 0.;
     double       interval_begin = 0., interval_end = 0.;
     bool         ends_interval = false;
+    bool         may_be_halved = false;
     double       viscosity     = 0.; ///< `Viscous stabilisation` of the interval
     /// The interval is under arc length: equilibria are followed whether they are stable or not.
     bool   follows_branch = false;
@@ -110,6 +111,7 @@ namespace Nodus
               interval_begin(),
               interval_end(),
               ends_interval(),
+              may_cut_back(),
               parameters_.stabilisation(interval_),
               parameters_.has_arc_length(interval_),
               arc_};
@@ -122,6 +124,7 @@ namespace Nodus
               interval_begin(),
               interval_end(),
               time() == interval_begin(),
+              false,
               parameters_.stabilisation(interval_),
               parameters_.has_arc_length(interval_)};
     }

@@ -45,6 +45,7 @@ namespace Nodus
     const bool              frozen  = p.threshold_loop.mode != Mode::newton && contact.threshold_follows_pressure();
 
     const std::vector<Kind> any_kind = {Kind::newton_stalled,
+                                        Kind::newton_lost,
                                         Kind::newton_limit,
                                         Kind::status_cycle,
                                         Kind::inverted_cell,
@@ -70,7 +71,7 @@ namespace Nodus
         {"the coupled threshold",
          coupled,
          Remedy::coupled_threshold,
-         {Kind::newton_stalled, Kind::newton_limit, Kind::loop_limit},
+         {Kind::newton_stalled, Kind::newton_lost, Kind::newton_limit, Kind::loop_limit},
          false});
     return attempts;
   }
@@ -87,15 +88,18 @@ namespace Nodus
       }
       catch (const SolverFailure &failure)
       {
-        const auto next =
-            std::find_if(attempt + 1,
-                         attempts.end(),
-                         [&](const Attempt &other)
-                         {
-                           const bool same = !other.remedy && !went_on_; // nothing but another start
-                           return !same && std::find(other.answers.begin(), other.answers.end(), failure.kind()) !=
-                                               other.answers.end();
-                         });
+        const auto next = std::find_if(
+            attempt + 1,
+            attempts.end(),
+            [&](const Attempt &other)
+            {
+              const bool same = !other.remedy && !equilibrium_.predicted(); // nothing but another start
+              // what another way through the same increment costs more than two halves
+              const bool too_large = other.remedy && failure.kind() == SolverFailure::Kind::newton_lost &&
+                                     equilibrium_.increment().may_be_halved;
+              return !same && !too_large &&
+                     std::find(other.answers.begin(), other.answers.end(), failure.kind()) != other.answers.end();
+            });
         // without contact all attempts have the same system
         if (next == attempts.end() || (begins_singular() && model_.contact->n_closed() == 0))
           throw;
@@ -114,7 +118,8 @@ namespace Nodus
   {
     equilibrium_.begin_attempt(attempt.merged);
     journal_.diagnosis.begin_attempt(attempt.merged.names());
-    went_on_ = attempt.goes_on && equilibrium_.predict();
+    if (attempt.goes_on)
+      equilibrium_.predict();
     loops_.solve();
   }
 
@@ -156,8 +161,8 @@ namespace Nodus
   void Strategy::leave_if_unstable(const Attempt &attempt)
   {
     // A straight path takes one system, which the softest motion of those before says little about.
-    const bool straight =
-        went_on_ && journal_.counts.newton == 1 && equilibrium_.solver_type() == LinearSolverParameters::Type::direct;
+    const bool straight = equilibrium_.predicted() && journal_.counts.newton == 1 &&
+                          equilibrium_.solver_type() == LinearSolverParameters::Type::direct;
     if ((!stability_.follow() && !straight) || !stability_.can_count())
       return;
     const unsigned int n = stability_.n_unstable();

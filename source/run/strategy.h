@@ -79,7 +79,6 @@ namespace Nodus
     IncrementLoops &loops_;
     Stability       stability_;
     Relaxation      relaxation_;
-    bool            went_on_ = false; ///< the attempt at hand, along the motion of the last increment
   };
 } // namespace Nodus
 

@@ -23,6 +23,9 @@ namespace Nodus
       return std::min(largest, std::max(term, 0.1 / residual));
     }
 
+    /// Part of the largest force that an iterate leaves out of balance which is on its way to an equilibrium.
+    constexpr double near_balance = 0.5;
+
     [[noreturn]] void fail(const std::string &reason, const NewtonProblem::Norms &norms, const SolverFailure::Kind kind)
     {
       std::ostringstream message;
@@ -59,6 +62,7 @@ namespace Nodus
     NewtonProblem::Norms norms = problem.accept(0);
     log(0, norms, 0);
     double       before = 0., forcing = parameters_.largest_forcing_term, best = std::numeric_limits<double>::max();
+    double       nearest = best; // to balance
     unsigned int fewest = std::numeric_limits<unsigned int>::max(), idle = 0;
     while (problem.is_guess() || !converged(norms))
     {
@@ -74,14 +78,15 @@ namespace Nodus
       const double now = residual(norms);
       if (report.iterations > 0)
       {
-        idle   = now < best || norms.changes < fewest ? 0 : idle + 1;
-        best   = std::min(best, now);
-        fewest = std::min(fewest, norms.changes);
+        idle    = now < best || norms.changes < fewest ? 0 : idle + 1;
+        best    = std::min(best, now);
+        fewest  = std::min(fewest, norms.changes);
+        nearest = std::min(nearest, norms.force);
       }
       if (patience_ > 0 && idle >= patience_)
         fail("stalled: no progress in " + std::to_string(idle) + " iterations",
              norms,
-             SolverFailure::Kind::newton_stalled);
+             nearest > near_balance ? SolverFailure::Kind::newton_lost : SolverFailure::Kind::newton_stalled);
 
       if (report.iterations > 0)
         forcing = forcing_term(now, before, forcing, parameters_.largest_forcing_term);

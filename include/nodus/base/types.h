@@ -72,6 +72,7 @@ namespace Nodus
       unspecified,
       newton_limit,    ///< not converged in the iterations that Newton may take
       newton_stalled,  ///< a merged iteration without progress
+      newton_lost,     ///< likewise, and no iterate came near balance: the increment is too large for it
       not_finite,      ///< residual, matrix or solution
       inverted_cell,   ///< det F <= 0
       free_body,       ///< singular system: nothing resists a displacement

@@ -347,7 +347,8 @@ namespace Nodus
     // loops that end in a state that is no equilibrium do so where statuses contradict each other
     if (!statuses && !in_a_loop && (chattering || (kind == Kind::judged && evidence.n_changed_sites > 0)))
       add_status_cycle(parameters, history, evidence, causes);
-    if (kind == Kind::newton_limit || kind == Kind::newton_stalled || kind == Kind::not_finite || causes.empty())
+    if (kind == Kind::newton_limit || kind == Kind::newton_stalled || kind == Kind::newton_lost ||
+        kind == Kind::not_finite || causes.empty())
       add_newton(parameters, history, evidence, causes);
     return causes;
   }
