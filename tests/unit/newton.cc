@@ -72,13 +72,14 @@ namespace
     }
   };
 
-  /// Starts close to a solution, from where a change leads far away; residuals then fall by @p factor.
+  /// Starts close to a solution, from where a change leads far away; residuals then fall by @p factor from @p first.
   struct Returning : public NewtonProblem
   {
-    double       factor;
+    double       factor, first;
     unsigned int assembled = 0;
-    explicit Returning(const double f)
+    explicit Returning(const double f, const double first_residual = 1.)
         : factor(f)
+        , first(first_residual)
     {
     }
     Norms evaluate(bool) override
@@ -88,7 +89,7 @@ namespace
     Norms accept(unsigned int) override
     {
       Norms norms;
-      norms.force   = assembled == 0 ? 1e-3 : std::pow(factor, assembled);
+      norms.force   = assembled == 0 ? 1e-3 : first * std::pow(factor, assembled);
       norms.changes = assembled == 0 ? 0 : 1;
       if (norms.force < 1e-12)
         norms.changes = 0;
@@ -236,6 +237,19 @@ int main(int argc, char **argv)
     catch (const SolverFailure &failure)
     {
       std::cout << failure.what() << std::endl;
+    }
+
+  // What was never near balance is lost, and halved at once; other remedies are for what comes half-way.
+  for (const double first : {0.6, 0.4})
+    try
+    {
+      Returning stalls(1., first);
+      Newton(parameters, 2).solve(stalls, none);
+    }
+    catch (const SolverFailure &failure)
+    {
+      std::cout << first << " out of balance: " << (failure.kind() == SolverFailure::Kind::newton_lost ? "lost" : "")
+                << (failure.kind() == SolverFailure::Kind::newton_stalled ? "stalled" : "") << std::endl;
     }
 
   FixedPointLoop loop("status", {3, 0.});
