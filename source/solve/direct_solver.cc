@@ -212,10 +212,13 @@ namespace Nodus
       instance_ = std::make_unique<Instance>(communicator_, symmetric_);
     DMUMPS_STRUC_C &mumps = instance_->mumps;
 
-    mumps.n       = size_;
+    if (pattern_changed)
+      coupled_.find(size_, row_, column_, communicator_);
+    coupled_.take_diagonal(row_, value_, communicator_);
+    mumps.n       = coupled_.size();
     mumps.nnz_loc = static_cast<MUMPS_INT8>(row_.size());
-    mumps.irn_loc = row_.data();
-    mumps.jcn_loc = column_.data();
+    mumps.irn_loc = coupled_.row.data(); // entries in row 0 count as out of range, and are left out
+    mumps.jcn_loc = coupled_.column.data();
     mumps.a_loc   = value_.data();
 
     bool success = true;
@@ -245,10 +248,11 @@ namespace Nodus
 
   void DirectSolver::apply_inverse(std::vector<double> &x)
   {
-    DMUMPS_STRUC_C &mumps = instance_->mumps;
-    mumps.nrhs            = 1;
-    mumps.lrhs            = size_;
-    mumps.rhs             = x.data(); // only read and written on rank 0
+    DMUMPS_STRUC_C     &mumps = instance_->mumps;
+    std::vector<double> y     = coupled_.part(x);
+    mumps.nrhs                = 1;
+    mumps.lrhs                = coupled_.size();
+    mumps.rhs                 = y.data(); // only read and written on rank 0
     if (!instance_->run(3))
     {
       const std::string message = "Direct solver: MUMPS error " + std::to_string(infog(mumps, 1)) +
@@ -256,6 +260,7 @@ namespace Nodus
       instance_.reset();
       throw SolverFailure(message, SolverFailure::Kind::linear_solver);
     }
+    coupled_.solve(y, x);
     MPI_Bcast(x.data(), size_, MPI_DOUBLE, 0, communicator_);
   }
 
@@ -308,13 +313,15 @@ namespace Nodus
     report.work           = work_per_entry * dealii::Utilities::MPI::sum<double>(value_.size(), communicator_) +
                   work_per_operation * mumps.rinfog[2];
     if (symmetric_)
-      report.negative_pivots = infog(mumps, 12);
+      report.negative_pivots = infog(mumps, 12) + coupled_.n_negative();
     std::vector<int> null_pivots(infog(mumps, 28));
     if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
       std::copy_n(mumps.pivnul_list, null_pivots.size(), null_pivots.begin());
     MPI_Bcast(null_pivots.data(), static_cast<int>(null_pivots.size()), MPI_INT, 0, communicator_);
     for (const int i : null_pivots)
-      report.null_pivots.push_back(i - 1);
+      report.null_pivots.push_back(coupled_.unknown(i));
+    for (const int i : coupled_.null_pivots())
+      report.null_pivots.push_back(i);
     std::sort(report.null_pivots.begin(), report.null_pivots.end());
     return report;
   }

@@ -1,6 +1,7 @@
 #ifndef nodus_solve_direct_solver_h
 #define nodus_solve_direct_solver_h
 
+#include "solve/coupled_unknowns.h"
 #include "solve/flat_vectors.h"
 #include "solve/linear_solver.h"
 
@@ -11,7 +12,7 @@ namespace Nodus
 {
   /// Sparse factorisation of the whole system by MUMPS, distributed as it was assembled: of the upper triangle where
   /// the system is symmetric (indefinite). The symbolic analysis is kept while the positions of the entries do not
-  /// change. Negative pivots are counted in symmetric systems only.
+  /// change. MUMPS gets the unknowns that are coupled to others. Negative pivots are counted in symmetric systems only.
   class DirectSolver : public LinearSolver
   {
   public:
@@ -48,8 +49,9 @@ namespace Nodus
     int                       size_; ///< number of unknowns
     bool                      symmetric_;
     std::unique_ptr<Instance> instance_;
-    std::vector<int>          row_, column_; ///< of this rank's entries, starting at 1; MUMPS points here
-    std::vector<double>       value_;
+    std::vector<int>          row_, column_; ///< of this rank's entries, starting at 1
+    std::vector<double>       value_;        ///< MUMPS points here and into
+    CoupledUnknowns           coupled_;      ///< these
   };
 } // namespace Nodus
 
