@@ -23,7 +23,7 @@ def nearest(times, t=None):
         return max(times)
     best = min(times, key=lambda time: abs(time - t))
     if abs(best - t) > 1e-6 * max(1.0, abs(t)):
-        raise ResultsError(f"there is no time {t:g}; the nearest is {best:g}")
+        raise ResultsError(f"there is no time {t:.8g}; the nearest is {best:.8g}")
     return best
 
 
