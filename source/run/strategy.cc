@@ -11,6 +11,7 @@
 // |----------------|----------------------------------------------|-------------------------------------|
 // | increment      | the attempts of the ladder below             | Strategy::ladder                    |
 // | increment      | left where it ends in no stable equilibrium  | Strategy::leave_if_unstable         |
+// | increment      | halves, at once where Newton comes nowhere   | Strategy::solve_increment           |
 // | increment      | halves; relaxation where not stable          | LoadPath::solve                     |
 // | geometry loop  | slow passes are mixed                        | IncrementLoops::geometry_converged  |
 // | threshold loop | slow passes are mixed                        | IncrementLoops::threshold_converged |

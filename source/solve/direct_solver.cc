@@ -200,8 +200,11 @@ namespace Nodus
         value_[k]  = entries[k].value;
       }
     if (dealii::Utilities::MPI::max(finite ? 0 : 1, communicator_) != 0)
+    {
+      value_.clear(); // nothing is analysed for this pattern: the next one counts as changed
       throw SolverFailure("Direct solver: the matrix holds a value that is not finite",
                           SolverFailure::Kind::not_finite);
+    }
     return dealii::Utilities::MPI::max(changed ? 1 : 0, communicator_) != 0;
   }
 
