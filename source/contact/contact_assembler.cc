@@ -184,6 +184,10 @@ namespace Nodus
     law.in_the_mean             = pointwise && status_.projected(point.site);
     law.held                    = status_.holds_friction(jump_site(point, 0));
     law.elastic_slip            = status_.elastic_slip(point.slaves[0]);
+    law.void_threshold          = pointwise ? status_.void_threshold(point.site) : 0.;
+    law.void_weight             = law.void_threshold > 0.
+                                      ? law.void_threshold / status_.tangential_augmentation(point.site, -law.void_threshold)
+                                      : 1.;
     give_way(status_.pressure_gap_law(point.slaves[0]), law);
   }
 

@@ -73,7 +73,7 @@ namespace Nodus
       Column3 Lambda_void[2] = {Column3::Zero(), Column3::Zero()};
       bool    slips          = false, held;
       double  W, Wt; ///< weight, and weight times threshold
-      double  threshold, h_n, h_tau;
+      double  threshold, h_n, h_tau, void_weight;
       double  stiffness; ///< 0, or h_n where regularised (eq. F3)
       double  overclosure, compliance, elastic_slip;
       Column3 pi  = Column3::Zero();
@@ -156,6 +156,7 @@ namespace Nodus
       f.h_tau     = point.tangential_augmentation;
       f.held      = point.held;
 
+      f.void_weight  = point.void_weight;
       f.overclosure  = point.overclosure;
       f.compliance   = point.compliance;
       f.elastic_slip = point.elastic_slip;
@@ -221,8 +222,8 @@ namespace Nodus
         r.segment<2>(ia + 1) += law;
         // No friction multiplier where there is no friction (eq. 57-59).
         for (unsigned int t = 0; t < 2 && !f.held; ++t)
-          r(ia + 1 + t) -=
-              W * (i.void_tangent[t] * f.Lambda_void[t].dot(i.axis[t]) + i.blocked_tangent[t] * i.Lambda[t]);
+          r(ia + 1 + t) -= W * (f.void_weight * i.void_tangent[t] * f.Lambda_void[t].dot(i.axis[t]) +
+                                i.blocked_tangent[t] * i.Lambda[t]);
         for (unsigned int c = 0; c < f.n_nodes; ++c)
         {
           const Node        &j  = f.nodes[c];
@@ -234,8 +235,9 @@ namespace Nodus
             A.block<2, 2>(ia + 1, jc + 1) +=
                 Wt / f.h_tau * i.slip * j.slip * i.tangent * (Matrix3::Identity() - f.K_B) * j.tangent.transpose();
           for (unsigned int t = 0; t < 2; ++t) // eq. 47
-            A(ia + 1 + t, jc + 1 + t) -= W * (i.void_tangent[t] * j.void_tangent[t] * i.axis[t].dot(j.axis[t]) +
-                                              (a == c ? i.blocked_tangent[t] : 0.));
+            A(ia + 1 + t, jc + 1 + t) -=
+                W * (f.void_weight * i.void_tangent[t] * j.void_tangent[t] * i.axis[t].dot(j.axis[t]) +
+                     (a == c ? i.blocked_tangent[t] : 0.));
         }
       }
       // The rows of the multipliers in the columns of the jumps are those of the forces, transposed.

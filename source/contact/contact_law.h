@@ -61,9 +61,11 @@ namespace Nodus
     double                         threshold;               ///< mu lambda_s <= 0, at the point [pressure]
     double                         normal_augmentation;     ///< h_n > 0 (eq. Q1) [pressure/length]
     double                         tangential_augmentation; ///< h_tau > 0 of this threshold (eq. Q2) [1/length]
-    double overclosure  = 0.; ///< that the pressure-gap law gives at the pressure of the point (eq. C1) [length]
-    double compliance   = 0.; ///< its derivative with respect to the pressure [length/pressure]
-    double elastic_slip = 0.; ///< slip over which friction reaches its limit (eq. F4) [length]
+    double overclosure    = 0.; ///< that the pressure-gap law gives at the pressure of the point (eq. C1) [length]
+    double compliance     = 0.; ///< its derivative with respect to the pressure [length/pressure]
+    double elastic_slip   = 0.; ///< slip over which friction reaches its limit (eq. F4) [length]
+    double void_threshold = 0.; ///< s_v of integration points without friction (eq. Q4), else 0 [pressure]
+    double void_weight    = 1.; ///< w_v of the rows that hold Lambda at zero there
     /// Regularised: the pressure of contact is lambda - h_n d_n, and friction takes the projection on the unit ball
     /// whether it sticks or slips (eq. F3).
     bool in_the_mean = false;

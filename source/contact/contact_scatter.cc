@@ -91,10 +91,11 @@ namespace Nodus
 
   void ContactScatter::add_friction_weight(const ContactPoint &point, const LawPoint &law)
   {
-    const double Wt = law.weight * law.threshold;
     for (unsigned int a = 0; a < law.n_nodes; ++a)
-      if (law.nodes[a].status.friction)
-        law_residual_[4 * point.slaves[a] + 3] -= std::abs(law.nodes[a].shape) * Wt;
+    {
+      const double threshold = law.nodes[a].status.friction ? -law.threshold : law.void_threshold;
+      law_residual_[4 * point.slaves[a] + 3] += std::abs(law.nodes[a].shape) * law.weight * threshold;
+    }
   }
 
   /// All that the local unknowns of a point consist of (eq. 35), by index in the system.

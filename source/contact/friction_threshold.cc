@@ -15,6 +15,8 @@ namespace Nodus
   {
     /// Thresholds below this fraction of the largest count as frictionless: their friction rows would be singular.
     constexpr double relative_threshold_floor = 1e-6;
+    /// s_v of the largest (eq. Q4): nodes with few points of friction need some hold, and thresholds a limit.
+    constexpr double relative_void_threshold = 1e-2;
   } // namespace
 
   /// Eq. L2.
@@ -164,6 +166,11 @@ namespace Nodus
     for (unsigned int k = 0; k < slip_length_.size(); ++k)
       slip_length_[k] = std::hypot(now_.slip[k][0], now_.slip[k][1]);
     update_floor();
+  }
+
+  double Status::void_threshold(const unsigned int site) const
+  {
+    return relative_void_threshold / relative_threshold_floor * threshold_floor_[surfaces_.pair(site)];
   }
 
   void Status::update_floor()

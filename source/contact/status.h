@@ -140,6 +140,10 @@ namespace Nodus
              std::max(-threshold, threshold_floor_[pair]);
     }
 
+    /// s_v, as which integration points without friction weigh in the rows of their multipliers (eq. Q4); 0 where no
+    /// site of the pair has friction [pressure].
+    double void_threshold(unsigned int site) const;
+
     /// Of the site's pair: null where contact is hard.
     const PressureGapLaw *pressure_gap_law(const unsigned int site) const
     {

@@ -1,8 +1,9 @@
 // Units and axes are the user's. A steel block is pressed on another with friction and dragged, slipping in part:
 // - in mm and MPa, and in m and Pa, every increment takes the same number of Newton iterations and gives the same
-// forces
-//   in N;
+//   forces in N;
 // - turned by 33 degrees about an oblique axis, with its displacements or its loads, the forces turn with it.
+// A block that leans forwards slides sideways on a rigid plane, on a part of its face: friction is mu times the
+// pressure, in units of a modulus of 1 and of 1e9.
 
 #include "../cases.h"
 
@@ -135,6 +136,39 @@ namespace
     }
     check(what + ": difference of the forces", largest, 0., 1e-8, scale);
   }
+
+  /// Friction over mu times the pressure, where sites that are open share multipliers with those that slide.
+  void check_sliding(const std::string &name, const Scheme scheme, const double E)
+  {
+    Parameters p;
+    p.bodies                                = {box("block", "2,2,1", {0, 0, 0}, {2, 1, 1}, E, 0.3)};
+    p.bodies[0].rotation_axis               = Vector3({0, 1, 0});
+    p.bodies[0].rotation_angle              = 1.;
+    p.boundary_conditions                   = {condition("top",
+                                       BoundaryConditionParameters::Type::displacement,
+                                       region(1, {z_plus}),
+                                       {0, 1, 2},
+                                       {"0", "0.4*max(t-1,0)", "-0.02*min(t,1)"})};
+    p.contact_pairs                         = {ContactPairParameters()};
+    p.contact_pairs[0].slave                = region(1, {z_minus});
+    p.contact_pairs[0].master_surface.shape = MasterSurfaceParameters::Shape::plane;
+    p.contact_pairs[0].master_surface.point = Point(0., 0., -2. * std::sin(dealii::numbers::PI / 180));
+    p.contact_pairs[0].master_surface.axis  = Vector3({0, 0, 1});
+    p.contact_pairs[0].scheme               = scheme;
+    p.contact_pairs[0].friction_coefficient = 0.8;
+    p.load_stepping.interval_ends           = {1., 2.};
+    p.load_stepping.increments              = {2, 4};
+    p.output.results_folder                 = "invariance_results";
+    p.output.write_vtu                      = false;
+    ContactProblem problem(p, world(), log());
+    problem.run();
+    const auto        &contact = problem.contact_resultants()[0];
+    std::ostringstream label;
+    label << name << ", E = " << E;
+    check(label.str() + ": open and slipping, none that sticks",
+          contact.open > 0 && contact.slip > 0 && contact.stick == 0);
+    check("  friction over mu times the pressure", -contact.slave_force[1] / (0.8 * contact.slave_force[2]), 1., 1e-4);
+  }
 } // namespace
 
 int main(int argc, char **argv)
@@ -173,4 +207,8 @@ int main(int argc, char **argv)
   const Outcome m  = run(c);
   check("condensed solver, mm and m: Newton iterations agree", mm.iterations == m.iterations);
   check_forces("condensed solver, mm and m", mm, m, false);
+
+  for (const auto &[scheme, name] : schemes)
+    for (const double E : {1., 1e9})
+      check_sliding(name, scheme, E);
 }
