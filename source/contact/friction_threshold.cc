@@ -170,7 +170,11 @@ namespace Nodus
 
   double Status::void_threshold(const unsigned int site) const
   {
-    return relative_void_threshold / relative_threshold_floor * threshold_floor_[surfaces_.pair(site)];
+    const unsigned int pair    = surfaces_.pair(site);
+    const double       modulus = normal_augmentation_[pair] * surfaces_.face_size(pair);
+    const double       largest = threshold_floor_[pair] / relative_threshold_floor;
+    // a power of two of the modulus: that it follows the iterate is not in the tangent
+    return largest > 0. ? relative_void_threshold * std::ldexp(modulus, std::ilogb(largest / modulus)) : 0.;
   }
 
   void Status::update_floor()
