@@ -1,14 +1,10 @@
 #include "contact/contact_geometry.h"
 #include "contact/master_request.h"
-#include "contact/triangles.h"
-
-#include <deal.II/numerics/rtree.h>
-
-#include <boost/iterator/function_output_iterator.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace Nodus
 {
@@ -53,31 +49,25 @@ namespace Nodus
           nodes[i] = larger[i].first;
       }
     };
-  } // namespace
 
-  struct MasterSearch::Tree
-  {
-    using Leaf = std::pair<dealii::BoundingBox<dim>, unsigned int>;
-    decltype(dealii::pack_rtree(std::vector<Leaf>())) leaves;
-
-    /// Calls f for the leaves that meet @p box. (The iterators of such queries take memory for each.)
-    template <typename Function>
-    void for_each(const dealii::BoundingBox<dim> &box, const Function &f) const
+    std::vector<TreeBox> face_boxes(const SurfaceGeometry &surface)
     {
-      leaves.query(boost::geometry::index::intersects(box), boost::make_function_output_iterator(f));
+      std::vector<TreeBox> boxes;
+      boxes.reserve(surface.n_faces());
+      for (unsigned int f = 0; f < surface.n_faces(); ++f)
+        boxes.emplace_back(face_box(surface.face(f), surface.degree(), surface.positions()));
+      return boxes;
     }
-  };
+  } // namespace
 
   MasterSearch::MasterSearch(const SurfaceGeometry &master, const double tolerance, const bool segments)
       : master_(master)
       , segments_(segments)
       , tolerance_(std::max(tolerance, no_tolerance))
-      , tree_(std::make_unique<Tree>())
+      , tree_(face_boxes(master))
       , on_rim_(master.n_faces())
   {
-    const FaceShape         middle(master.shape_degree(), 0.5, 0.5);
-    std::vector<Tree::Leaf> leaves;
-    leaves.reserve(master.n_faces());
+    const FaceShape middle(master.shape_degree(), 0.5, 0.5);
     for (unsigned int f = 0; f < master.n_faces(); ++f)
     {
       const FaceGeometry centre(middle, master.shape_points(f));
@@ -85,10 +75,8 @@ namespace Nodus
       centre_.push_back(centre.x);
       centre_normal_.push_back(area / area.norm());
       size_.push_back(std::sqrt(centre.area_vector().norm()));
-      leaves.emplace_back(face_box(master.face(f), master.degree(), master.positions()), f);
     }
     find_rims();
-    tree_->leaves = dealii::pack_rtree(leaves);
   }
 
   void MasterSearch::find_rims()
@@ -119,9 +107,6 @@ namespace Nodus
            (centre_[neighbour] - centre_[f]) * centre_normal_[f] < 0.;
   }
 
-  MasterSearch::~MasterSearch()                        = default;
-  MasterSearch::MasterSearch(MasterSearch &&) noexcept = default;
-
   namespace
   {
     /// The closest of several faces.
@@ -139,25 +124,28 @@ namespace Nodus
         distance = std::min(d2, distance);
         at       = other;
       }
+      /// Boxes nearer than this may have faces that count: as near as the best one, too.
+      double limit() const
+      {
+        return std::nextafter(distance, std::numeric_limits<double>::infinity());
+      }
     };
   } // namespace
 
   Projection
   MasterSearch::closest(const Point &p, const Vector3 &slave_normal, const double reach, const double part) const
   {
-    namespace bgi      = boost::geometry::index;
-    const double limit = segments_ ? SelfContact::averted_cosine : far_side_cosine;
+    const double along = segments_ ? SelfContact::averted_cosine : far_side_cosine;
     Closest      best{{}, reach * reach};
-    for (auto leaf = tree_->leaves.qbegin(bgi::nearest(p, master_.n_faces() + 1)); leaf != tree_->leaves.qend(); ++leaf)
-    {
-      if (squared_distance(leaf->first, p) > best.distance)
-        break; // boxes come in ascending distance
-      Projection at{leaf->second};
-      if (centre_normal_[at.face] * slave_normal > limit)
-        continue;
-      const double d2 = closest_point(master_, at.face, p, at.xi, at.eta);
-      best.take(at, d2, size_[at.face]);
-    }
+    tree_.nearest(p,
+                  best.limit(),
+                  [&](const unsigned int f, double)
+                  {
+                    Projection at{f};
+                    if (centre_normal_[f] * slave_normal <= along)
+                      best.take(at, closest_point(master_, f, p, at.xi, at.eta), size_[f]);
+                    return best.limit();
+                  });
     return within_rim(best.at, p, part);
   }
 
@@ -172,13 +160,12 @@ namespace Nodus
     dealii::BoundingBox<dim>                                  around({p, p});
     around.extend(reach);
     faces.clear();
-    tree_->for_each(around,
-                    [&](const Tree::Leaf &leaf)
-                    {
-                      const unsigned int f = leaf.second;
-                      if (centre_normal_[f] * normal <= SelfContact::averted_cosine && seeker.may_meet(f, p, normal))
-                        faces.emplace_back(squared_distance(leaf.first, p), f);
-                    });
+    tree_.meeting(TreeBox(around),
+                  [&](const unsigned int f)
+                  {
+                    if (centre_normal_[f] * normal <= SelfContact::averted_cosine && seeker.may_meet(f, p, normal))
+                      faces.emplace_back(tree_.box(f).squared_distance(p), f);
+                  });
     std::sort(faces.begin(), faces.end());
     Closest best{{}, reach * reach};
     for (const auto &[least, f] : faces)
@@ -216,7 +203,7 @@ namespace Nodus
   void MasterSearch::candidates(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &faces) const
   {
     faces.clear();
-    tree_->for_each(box, [&](const Tree::Leaf &leaf) { faces.push_back(leaf.second); });
+    tree_.meeting(TreeBox(box), [&](const unsigned int f) { faces.push_back(f); });
     std::sort(faces.begin(), faces.end());
   }
 

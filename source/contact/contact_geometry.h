@@ -1,6 +1,7 @@
 #ifndef nodus_contact_contact_geometry_h
 #define nodus_contact_contact_geometry_h
 
+#include "base/box_tree.h"
 #include "contact/self_contact.h"
 
 #include <deal.II/base/bounding_box.h>
@@ -30,8 +31,6 @@ namespace Nodus
     /// @p segments, which do not see faces that look past them (facing()), these are no partners, and edges between
     /// such faces are rims.
     MasterSearch(const SurfaceGeometry &master, double tolerance, bool segments);
-    ~MasterSearch();
-    MasterSearch(MasterSearch &&) noexcept;
 
     /// Closest master point of @p p within @p reach that does not look the way of @p slave_normal (the far side of a
     /// body). A point beyond the rim of the surface by more than @p part of what is tolerated has none.
@@ -64,11 +63,10 @@ namespace Nodus
     bool       falls_off(unsigned int f, unsigned int neighbour) const;
     Projection within_rim(const Projection &closest, const Point &p, double part) const;
 
-    struct Tree;
     const SurfaceGeometry            &master_;
     const bool                        segments_;
     const double                      tolerance_; ///< of the overhang [faces]
-    std::unique_ptr<Tree>             tree_;
+    BoxTree                           tree_;      ///< of the faces
     std::vector<SurfaceGeometry::Rim> on_rim_;
     std::vector<Point>                centre_;
     std::vector<Vector3>              centre_normal_; ///< outward

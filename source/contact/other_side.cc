@@ -81,19 +81,19 @@ namespace Nodus
     dealii::Utilities::MPI::sum(sum, communicator, sum);
     for (unsigned int c = 0; c < dim; ++c)
       motion_[c] = sum[c] / sum[dim];
-    Box all = own.box();
+    TreeBox all = own.box();
     for (const unsigned int n : own.nodes())
     {
       before_[n] += motion_;
       moves_ = std::max(moves_, (now[n] - before_[n]).norm());
-      all.merge_with(Box({before_[n], before_[n]}));
+      all.add(before_[n]);
     }
     moves_ = dealii::Utilities::MPI::max(moves_, communicator);
     std::array<double, 2 * dim> corners{};
     for (unsigned int c = 0; c < dim; ++c)
     {
-      corners[c]       = all.lower_bound(c);
-      corners[dim + c] = all.upper_bound(c);
+      corners[c]       = all.lower[c];
+      corners[dim + c] = all.upper[c];
     }
     of_rank_ = all_gather(communicator, std::make_pair(own.nodes().empty() ? 0u : 1u, corners));
   }

@@ -1,20 +1,14 @@
 #include "contact/triangles.h"
 #include "contact/self_contact.h"
 
-#include <deal.II/numerics/rtree.h>
-
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 namespace Nodus
 {
   namespace
   {
-    using Box  = dealii::BoundingBox<dim>;
-    using Leaf = std::pair<Box, unsigned int>;
-
     /// A point this far outside of a triangle (part of its size) still goes through it, lest any slip between two.
     constexpr double slack = 1e-9;
 
@@ -23,9 +17,12 @@ namespace Nodus
       return dealii::cross_product_3d(a, b);
     }
 
-    Box box_of(const std::initializer_list<Point> &points)
+    TreeBox box_of(const std::initializer_list<Point> &points)
     {
-      return Box(std::vector<Point>(points));
+      TreeBox box;
+      for (const Point &p : points)
+        box.add(p);
+      return box;
     }
 
     /// Barycentric coordinates of the point of a triangle that is closest to @p p (Ericson 2005, section 5.1.5).
@@ -99,17 +96,6 @@ namespace Nodus
     }
   } // namespace
 
-  double squared_distance(const Box &box, const Point &p)
-  {
-    double d2 = 0.;
-    for (unsigned int c = 0; c < dim; ++c)
-    {
-      const double d = std::max({box.lower_bound(c) - p[c], 0., p[c] - box.upper_bound(c)});
-      d2 += d * d;
-    }
-    return d2;
-  }
-
   std::vector<Crossing> find_crossings(const Way &p, const Way &a, const Way &b, const Way &c)
   {
     const Moving q(p, a), e(b, a), f(c, a);
@@ -131,15 +117,6 @@ namespace Nodus
     return found;
   }
 
-  struct Triangles::Tree
-  {
-    explicit Tree(const std::vector<Leaf> &boxes)
-        : leaves(dealii::pack_rtree(boxes))
-    {
-    }
-    decltype(dealii::pack_rtree(std::vector<Leaf>())) leaves;
-  };
-
   Triangles::Triangles(const std::vector<SurfaceFace> &faces,
                        const unsigned int              rank,
                        const unsigned int              degree,
@@ -149,9 +126,8 @@ namespace Nodus
       , normals_(x.size())
       , on_rim_(x.size(), 0)
   {
-    std::vector<std::pair<std::array<unsigned int, 2>, unsigned int>> edges; // with the triangle
-    std::vector<Triangle>                                             all;
-    std::vector<char>                                                 own;
+    std::vector<Triangle> all;
+    std::vector<char>     own;
     for (const SurfaceFace &face : faces)
       for (unsigned int j = 0; j < degree; ++j)
         for (unsigned int i = 0; i < degree; ++i)
@@ -167,12 +143,14 @@ namespace Nodus
             own.push_back(face.owner == rank);
           }
         }
-    std::map<std::array<unsigned int, 2>, unsigned int> count;
-    const auto                                          edge = [](const Triangle &triangle, const unsigned int opposite)
+    using Edge      = std::array<unsigned int, 2>;
+    const auto edge = [](const Triangle &triangle, const unsigned int opposite)
     {
       const unsigned int a = triangle.nodes[(opposite + 1) % 3], b = triangle.nodes[(opposite + 2) % 3];
-      return std::array<unsigned int, 2>{{std::min(a, b), std::max(a, b)}};
+      return Edge{{std::min(a, b), std::max(a, b)}};
     };
+    std::vector<Edge> edges; // in ascending order, of two triangles twice
+    edges.reserve(3 * all.size());
     for (const Triangle &triangle : all)
     {
       const Point *const p[3] = {&x[triangle.nodes[0]], &x[triangle.nodes[1]], &x[triangle.nodes[2]]};
@@ -180,15 +158,21 @@ namespace Nodus
       for (unsigned int v = 0; v < 3; ++v)
       {
         normals_[triangle.nodes[v]] += area;
-        ++count[edge(triangle, v)];
+        edges.push_back(edge(triangle, v));
       }
     }
-    std::vector<Leaf> leaves;
+    std::sort(edges.begin(), edges.end());
+    const auto is_alone = [&](const Edge &one)
+    {
+      const auto at = std::lower_bound(edges.begin(), edges.end(), one);
+      return at + 1 == edges.end() || *(at + 1) != one;
+    };
+    std::vector<TreeBox> boxes;
     for (unsigned int i = 0; i < all.size(); ++i)
     {
       Triangle &triangle = all[i];
       for (unsigned int v = 0; v < 3; ++v)
-        if (count[edge(triangle, v)] == 1)
+        if (is_alone(edge(triangle, v)))
         {
           triangle.rim[v] = true;
           for (const unsigned int n : edge(triangle, v))
@@ -196,12 +180,8 @@ namespace Nodus
         }
       if (!own[i])
         continue;
-      const Box box = box_of({x[triangle.nodes[0]], x[triangle.nodes[1]], x[triangle.nodes[2]]});
-      if (leaves.empty())
-        box_ = box;
-      else
-        box_.merge_with(box);
-      leaves.emplace_back(box, triangles_.size());
+      boxes.push_back(box_of({x[triangle.nodes[0]], x[triangle.nodes[1]], x[triangle.nodes[2]]}));
+      box_.add(boxes.back());
       nodes_.insert(nodes_.end(), triangle.nodes.begin(), triangle.nodes.end());
       triangles_.push_back(triangle);
     }
@@ -210,7 +190,7 @@ namespace Nodus
     for (Vector3 &normal : normals_)
       if (const double length = normal.norm(); length > 0.)
         normal /= length;
-    tree_ = std::make_unique<Tree>(leaves);
+    tree_ = BoxTree(std::move(boxes));
     if (nodes != nullptr)
       know_nodes(faces, degree, *nodes);
   }
@@ -272,9 +252,6 @@ namespace Nodus
     return !is_at(triangle, own) && (own.least > 0. || !meet_elsewhere(own.elsewhere, triangle.face->elsewhere));
   }
 
-  Triangles::~Triangles()                     = default;
-  Triangles::Triangles(Triangles &&) noexcept = default;
-
   Height Triangles::height(const Triangle &triangle, const Point &p) const
   {
     const auto  &n     = triangle.nodes;
@@ -316,34 +293,17 @@ namespace Nodus
 
   Height Triangles::height(const Point &p, const double reach, const OwnNode &own) const
   {
-    namespace bgi = boost::geometry::index;
     Height nearest;
     nearest.distance = reach;
-    const auto take  = [&](const Leaf &leaf)
-    {
-      const Triangle &triangle = triangles_[leaf.second];
-      const Height    here     = height(triangle, p);
-      if (here.distance < nearest.distance && (own.nodes.empty() || counts(triangle, here, own)))
-        nearest = here;
-    };
-    if (own.nodes.empty())
-    {
-      for (auto leaf = tree_->leaves.qbegin(bgi::nearest(p, triangles_.size() + 1)); leaf != tree_->leaves.qend();
-           ++leaf)
-      {
-        if (squared_distance(leaf->first, p) > nearest.distance * nearest.distance)
-          break; // boxes come in ascending distance
-        take(*leaf);
-      }
-    }
-    else // most of those nearby do not count
-    {
-      Box around({p, p});
-      around.extend(reach);
-      for (auto leaf = tree_->leaves.qbegin(bgi::intersects(around)); leaf != tree_->leaves.qend(); ++leaf)
-        if (squared_distance(leaf->first, p) <= nearest.distance * nearest.distance)
-          take(*leaf);
-    }
+    tree_.nearest(p,
+                  reach * reach,
+                  [&](const unsigned int t, double)
+                  {
+                    const Height here = height(triangles_[t], p);
+                    if (here.distance < nearest.distance && (own.nodes.empty() || counts(triangles_[t], here, own)))
+                      nearest = here;
+                    return nearest.distance * nearest.distance;
+                  });
     return nearest.distance < reach ? nearest : Height();
   }
 
@@ -351,29 +311,29 @@ namespace Nodus
                                                           const std::vector<Point>   &before,
                                                           const std::vector<OwnNode> &own) const
   {
-    namespace bgi = boost::geometry::index;
     std::vector<std::vector<Crossing>> result(ways.size());
     if (ways.empty())
       return result;
-    std::vector<Leaf> swept;
-    for (unsigned int i = 0; i < triangles_.size(); ++i)
+    std::vector<TreeBox> swept;
+    swept.reserve(triangles_.size());
+    for (const Triangle &triangle : triangles_)
     {
-      const auto &n = triangles_[i].nodes;
-      swept.emplace_back(box_of({x_[n[0]], x_[n[1]], x_[n[2]], before[n[0]], before[n[1]], before[n[2]]}), i);
+      const auto &n = triangle.nodes;
+      swept.push_back(box_of({x_[n[0]], x_[n[1]], x_[n[2]], before[n[0]], before[n[1]], before[n[2]]}));
     }
-    const Tree tree(swept);
+    const BoxTree tree(std::move(swept));
     for (unsigned int w = 0; w < ways.size(); ++w)
     {
-      const Box around = box_of({ways[w][0], ways[w][1]});
-      for (auto leaf = tree.leaves.qbegin(bgi::intersects(around)); leaf != tree.leaves.qend(); ++leaf)
-      {
-        const auto &n   = triangles_[leaf->second].nodes;
-        const auto  way = [&](const unsigned int v) { return Way{{before[n[v]], x_[n[v]]}}; };
-        if (!own[w].nodes.empty() && !may_meet(triangles_[leaf->second], own[w]))
-          continue;
-        for (const Crossing &crossing : find_crossings(ways[w], way(0), way(1), way(2)))
-          result[w].push_back(crossing);
-      }
+      tree.meeting(box_of({ways[w][0], ways[w][1]}),
+                   [&](const unsigned int t)
+                   {
+                     const auto &n   = triangles_[t].nodes;
+                     const auto  way = [&](const unsigned int v) { return Way{{before[n[v]], x_[n[v]]}}; };
+                     if (!own[w].nodes.empty() && !may_meet(triangles_[t], own[w]))
+                       return;
+                     for (const Crossing &crossing : find_crossings(ways[w], way(0), way(1), way(2)))
+                       result[w].push_back(crossing);
+                   });
     }
     return result;
   }

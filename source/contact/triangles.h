@@ -1,13 +1,11 @@
 #ifndef nodus_contact_triangles_h
 #define nodus_contact_triangles_h
 
+#include "base/box_tree.h"
 #include "contact/surface_face.h"
-
-#include <deal.II/base/bounding_box.h>
 
 #include <array>
 #include <limits>
-#include <memory>
 #include <vector>
 
 namespace Nodus
@@ -42,9 +40,6 @@ namespace Nodus
     }
   };
 
-  /// Of a point from a box, 0 inside.
-  double squared_distance(const dealii::BoundingBox<dim> &box, const Point &p);
-
   using Way = std::array<Point, 2>; ///< from, to
 
   /// A point that moves evenly goes through a triangle whose corners do likewise.
@@ -77,15 +72,13 @@ namespace Nodus
               unsigned int                    degree,
               const std::vector<Point>       &x,
               const std::vector<SurfaceNode> *nodes = nullptr);
-    ~Triangles();
-    Triangles(Triangles &&) noexcept;
 
     /// The nodes of the faces of this rank, and a box around them.
     const std::vector<unsigned int> &nodes() const
     {
       return nodes_;
     }
-    const dealii::BoundingBox<dim> &box() const
+    const TreeBox &box() const
     {
       return box_;
     }
@@ -114,7 +107,6 @@ namespace Nodus
       std::array<bool, 3>         rim;   ///< whether the edge opposite to each is
       const SurfaceFace          *face;
     };
-    struct Tree;
     Height height(const Triangle &triangle, const Point &p) const;
     void know_nodes(const std::vector<SurfaceFace> &faces, unsigned int degree, const std::vector<SurfaceNode> &nodes);
     bool is_at(const Triangle &triangle, const OwnNode &own) const;
@@ -127,8 +119,8 @@ namespace Nodus
     std::vector<Vector3>      normals_; ///< of all nodes, zero where there is no face
     std::vector<char>         on_rim_;  ///< likewise
     std::vector<OwnNode>      own_;     ///< likewise; empty without nodes
-    dealii::BoundingBox<dim>  box_;
-    std::unique_ptr<Tree>     tree_;
+    TreeBox                   box_;
+    BoxTree                   tree_;
   };
 } // namespace Nodus
 

@@ -4,7 +4,7 @@
 #include "rigid/rigid_surface.h"
 #include "rigid/triangle_mesh.h"
 #include "rigid/triangle_patch.h"
-#include "rigid/triangle_tree.h"
+#include "base/box_tree.h"
 
 #include <array>
 #include <limits>
@@ -68,7 +68,7 @@ namespace Nodus
     std::vector<TrianglePatch> patches_;
     std::vector<double>        bulge_; ///< of a patch over its triangle, at most [length]
     std::vector<double>        size_;  ///< square root of the area [length]
-    TriangleTree               tree_;
+    BoxTree               tree_;
   };
 } // namespace Nodus
 

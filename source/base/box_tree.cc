@@ -1,6 +1,7 @@
-#include "rigid/triangle_tree.h"
+#include "base/box_tree.h"
 
 #include <numeric>
+#include <utility>
 
 namespace Nodus
 {
@@ -10,24 +11,25 @@ namespace Nodus
     constexpr unsigned int leaf_size = 4;
   } // namespace
 
-  TriangleTree::TriangleTree(const std::vector<TreeBox> &boxes)
-      : numbers_(boxes.size())
+  BoxTree::BoxTree(std::vector<TreeBox> boxes)
+      : boxes_(std::move(boxes))
+      , numbers_(boxes_.size())
   {
     std::iota(numbers_.begin(), numbers_.end(), 0);
-    nodes_.reserve(boxes.size());
-    build(0, boxes.size(), boxes);
+    nodes_.reserve(boxes_.size());
+    build(0, boxes_.size());
   }
 
-  void TriangleTree::build(const unsigned int first, const unsigned int last, const std::vector<TreeBox> &boxes)
+  void BoxTree::build(const unsigned int first, const unsigned int last)
   {
     const unsigned int at = nodes_.size();
     nodes_.emplace_back();
     TreeBox    centres; // twice
     const auto centre = [&](const unsigned int number, const unsigned int c)
-    { return boxes[number].lower[c] + boxes[number].upper[c]; };
+    { return boxes_[number].lower[c] + boxes_[number].upper[c]; };
     for (unsigned int i = first; i < last; ++i)
     {
-      nodes_[at].box.add(boxes[numbers_[i]]);
+      nodes_[at].box.add(boxes_[numbers_[i]]);
       centres.add(Point(centre(numbers_[i], 0), centre(numbers_[i], 1), centre(numbers_[i], 2)));
     }
     if (last - first <= leaf_size)
@@ -46,8 +48,8 @@ namespace Nodus
                      numbers_.begin() + last,
                      [&](const unsigned int a, const unsigned int b)
                      { return std::make_pair(centre(a, along), a) < std::make_pair(centre(b, along), b); });
-    build(first, middle, boxes);
+    build(first, middle);
     nodes_[at].first = nodes_.size();
-    build(middle, last, boxes);
+    build(middle, last);
   }
 } // namespace Nodus

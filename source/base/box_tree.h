@@ -1,7 +1,9 @@
-#ifndef nodus_rigid_triangle_tree_h
-#define nodus_rigid_triangle_tree_h
+#ifndef nodus_base_box_tree_h
+#define nodus_base_box_tree_h
 
 #include <nodus/base/types.h>
+
+#include <deal.II/base/bounding_box.h>
 
 #include <algorithm>
 #include <array>
@@ -20,6 +22,14 @@ namespace Nodus
       lower.fill(std::numeric_limits<double>::max());
       upper.fill(-std::numeric_limits<double>::max());
     }
+    explicit TreeBox(const dealii::BoundingBox<dim> &box)
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+      {
+        lower[c] = box.lower_bound(c);
+        upper[c] = box.upper_bound(c);
+      }
+    }
     void add(const Point &p)
     {
       for (unsigned int c = 0; c < dim; ++c)
@@ -36,6 +46,13 @@ namespace Nodus
         upper[c] = std::max(upper[c], box.upper[c]);
       }
     }
+    bool meets(const TreeBox &other) const
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+        if (lower[c] > other.upper[c] || other.lower[c] > upper[c])
+          return false;
+      return true;
+    }
     /// Squared distance of a point, 0 inside.
     double squared_distance(const Point &p) const
     {
@@ -49,14 +66,18 @@ namespace Nodus
     }
   };
 
-  /// A balanced binary tree of boxes: what is nearest to a point is found without looking at what is farther, and
-  /// without allocating anything, as queries of an rtree do.
-  class TriangleTree
+  /// A balanced binary tree of boxes: what is nearest to a point is found without looking at what is farther, and what
+  /// meets a box likewise, without allocating anything, as queries of an rtree do.
+  class BoxTree
   {
   public:
     /// @p boxes: of the things in the tree, by their numbers.
-    explicit TriangleTree(const std::vector<TreeBox> &boxes);
+    explicit BoxTree(std::vector<TreeBox> boxes = {});
 
+    const TreeBox &box(const unsigned int number) const
+    {
+      return boxes_[number];
+    }
     /// Calls visit(number, squared) for things whose boxes are nearer to @p p than the squared distance that it
     /// returns, those in nearer boxes first; @p squared: what it may be at first.
     template <typename Visit>
@@ -74,7 +95,8 @@ namespace Nodus
         if (node.n > 0)
         {
           for (unsigned int i = node.first; i < node.first + node.n; ++i)
-            squared = std::min(squared, visit(numbers_[i], squared));
+            if (boxes_[numbers_[i]].squared_distance(p) < squared)
+              squared = std::min(squared, visit(numbers_[i], squared));
           continue;
         }
         const unsigned int child[2] = {at + 1, node.first};
@@ -82,6 +104,29 @@ namespace Nodus
         const unsigned int nearer = of[1] < of[0] ? 1 : 0;
         open[n++]                 = {child[1 - nearer], of[1 - nearer]};
         open[n++]                 = {child[nearer], of[nearer]};
+      }
+    }
+
+    /// Calls visit(number) for things whose boxes meet @p box, in no order.
+    template <typename Visit>
+    void meeting(const TreeBox &box, const Visit &visit) const
+    {
+      std::array<unsigned int, 2 * most_levels> open;
+      unsigned int                              n = 0;
+      open[n++]                                   = 0;
+      while (n > 0)
+      {
+        const unsigned int at   = open[--n];
+        const Node        &node = nodes_[at];
+        if (!node.box.meets(box))
+          continue;
+        for (unsigned int i = node.first; i < node.first + node.n; ++i)
+          if (boxes_[numbers_[i]].meets(box))
+            visit(numbers_[i]);
+        if (node.n > 0)
+          continue;
+        open[n++] = node.first;
+        open[n++] = at + 1;
       }
     }
 
@@ -95,8 +140,9 @@ namespace Nodus
       unsigned int first; ///< of the things of a leaf in numbers_, or the second child
       unsigned int n = 0; ///< things of a leaf
     };
-    void build(unsigned int first, unsigned int last, const std::vector<TreeBox> &boxes);
+    void build(unsigned int first, unsigned int last);
 
+    std::vector<TreeBox>      boxes_;
     std::vector<Node>         nodes_;
     std::vector<unsigned int> numbers_;
   };
