@@ -332,7 +332,7 @@ namespace Nodus
     const auto            take = [&](const Face &f)
     {
       const bool current = pairs[f.pair].surface_measure == ContactPairParameters::SurfaceMeasure::current;
-      mine.push_back(FaceIntegral(pairs[f.pair], surfaces, geometry, f, current ? x : X).integrate());
+      mine.push_back(integrate_face(pairs[f.pair], surfaces, geometry, f, current ? x : X));
     };
     for (const Face &f : faces_)
       take(f);

@@ -3,7 +3,6 @@
 
 #include "contact/averaged_jump.h"
 
-#include <Eigen/Dense>
 #include <boost/serialization/array.hpp>
 
 #include <vector>
@@ -36,62 +35,12 @@ namespace Nodus
   std::vector<FaceRows> collect(const ContactSurfaces &surfaces, std::vector<FaceRows> mine);
 
   /// Integrates one slave face of the averaged scheme over its points: what it adds to the rows of its slave nodes.
-  class FaceIntegral
-  {
-  public:
-    /// @p measure: positions that areas are of.
-    FaceIntegral(const ContactPairParameters &pair,
-                 const ContactSurfaces       &surfaces,
-                 const ContactGeometry       &geometry,
-                 const AveragedJump::Face    &face,
-                 const std::vector<Point>    &measure);
-
-    /// To be called once.
-    FaceRows integrate();
-
-  private:
-    using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 9, 9>;
-    using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 9, 1>;
-
-    /// phi and hats are those of the slave nodes: where some of the face's nodes hang they are conforming.
-    template <typename Nodal>
-    Column of_slaves(const Nodal &nodal) const
-    {
-      const auto values = face_.slave_values(nodal);
-      return Eigen::Map<const Column>(values.data(), m_);
-    }
-    double element(const FaceShape &shape) const
-    {
-      return FaceGeometry(face_, shape, measure_).area_vector().norm();
-    }
-
-    /// Nodes of the face, then those of the master.
-    void number_nodes();
-    /// psi = part (D M^-1)^T phi + (1 - part) hat, with M and D over the covered part.
-    void make_dual_functions();
-    void add_point(const MortarPoint &point, double weight);
-    /// The points on a curved face integrate its shape functions nearly, Gauss points to round-off: nodal areas of
-    /// covered faces are those, times the part that they count with (eq. J10).
-    void take_exact_areas();
-
-    const ContactPairParameters    &pair_;
-    const ContactSurfaces          &surfaces_;
-    const SurfaceGeometry          &slave_, &master_;
-    const MasterSearch             &search_;
-    const RigidSurface *const       rigid_;
-    const std::vector<Point>       &measure_;
-    const std::vector<MortarPoint> &points_;
-    const SurfaceFace              &face_;
-    const unsigned int              f_, n_, m_; ///< the face, its nodes and slave nodes
-    const double                    part_;      ///< of the dual functions in psi
-    const double                    exact_;     ///< part of the exact areas
-    const double                    counted_;   ///< part that the points count with, in the mean
-    FaceRows                        rows_;
-    unsigned int                    n_columns_ = 0;
-    std::vector<unsigned int>       nodes_;
-    std::vector<double>             weight_; ///< of the points
-    Matrix                          dual_;   ///< times part
-  };
+  /// @p measure: positions that areas are of.
+  FaceRows integrate_face(const ContactPairParameters &pair,
+                          const ContactSurfaces       &surfaces,
+                          const ContactGeometry       &geometry,
+                          const AveragedJump::Face    &face,
+                          const std::vector<Point>    &measure);
 } // namespace Nodus
 
 #endif

@@ -1,5 +1,6 @@
 #include "contact/segments.h"
 #include "contact/clipping.h"
+#include "contact/flat_face.h"
 
 #include <deal.II/base/quadrature_lib.h>
 
@@ -32,67 +33,6 @@ namespace Nodus
       const Vector3 area = dealii::cross_product_3d(corner[2] - corner[0], corner[3] - corner[1]);
       return orientation / area.norm() * area;
     }
-
-    /// A face as the plane sees it.
-    class FlatFace
-    {
-    public:
-      /// @param node called as node(n) for the (degree + 1)^2 positions of the face
-      template <typename Node>
-      FlatFace(const unsigned int degree, const CellPlane &plane, const Node &node)
-          : degree_(degree)
-      {
-        for (unsigned int n = 0; n < (degree + 1) * (degree + 1); ++n)
-          nodes_[n] = plane(node(n));
-      }
-
-      /// Finds the local coordinates of @p p by Newton's method from what is given; false where there are none.
-      bool invert(const Point2 &p, double &xi, double &eta) const
-      {
-        for (unsigned int iteration = 0; iteration < 20; ++iteration)
-        {
-          const Tangents t       = tangents(xi, eta);
-          const auto     r       = p - t.x;
-          const double   det     = cross(t.d_xi, t.d_eta);
-          const double   step_xi = cross(r, t.d_eta) / det, step_eta = cross(t.d_xi, r) / det;
-          xi += step_xi;
-          eta += step_eta;
-          if (!(std::abs(xi) + std::abs(eta) < 10.))
-            return false;
-          if (std::abs(step_xi) + std::abs(step_eta) < 1e-8) // its square is what is left
-            return true;
-        }
-        return false;
-      }
-      /// Area in the plane over that in local coordinates.
-      double area(const double xi, const double eta) const
-      {
-        const Tangents t = tangents(xi, eta);
-        return std::abs(cross(t.d_xi, t.d_eta));
-      }
-
-    private:
-      struct Tangents
-      {
-        Point2               x;
-        dealii::Tensor<1, 2> d_xi, d_eta;
-      };
-      Tangents tangents(const double xi, const double eta) const
-      {
-        const FaceShape shape(degree_, xi, eta);
-        Tangents        result;
-        for (unsigned int n = 0; n < shape.n; ++n)
-        {
-          result.x += shape.value[n] * nodes_[n];
-          result.d_xi += shape.d_xi[n] * nodes_[n];
-          result.d_eta += shape.d_eta[n] * nodes_[n];
-        }
-        return result;
-      }
-
-      const unsigned int    degree_;
-      std::array<Point2, 9> nodes_;
-    };
 
     /// Of the face with its smoothing.
     FlatFace smooth_face(const SurfaceGeometry &surface, const unsigned int f, const CellPlane &plane)
@@ -169,10 +109,12 @@ namespace Nodus
           const CellPlane plane(corner, slave_.face(f_).orientation);
           if (!find_candidates(corner, plane))
             continue;
-          const FlatFace slave_facet = facet(slave_, f_, plane);
+          const FlatFace slave_facet = facet(slave_, f_, plane), slave_face = smooth_face(slave_, f_, plane);
           find_overlaps(corner, plane);
+          reserve();
           for (const Overlap &overlap : overlaps())
-            if ((self_ == nullptr || self_->is_slave(f_, overlap.m)) && !add_points(cell, plane, slave_facet, overlap))
+            if ((self_ == nullptr || self_->is_slave(f_, overlap.m)) &&
+                !add_points(cell, plane, slave_facet, slave_face, overlap))
             {
               points_.clear();
               trace_.places.clear();
@@ -239,6 +181,17 @@ namespace Nodus
             add_overlap(window, plane, middle, cell_area, m, cell);
       }
 
+      /// For as many points as the overlaps of the present slave cell have.
+      void reserve()
+      {
+        unsigned int triangles = 0;
+        for (const Overlap &overlap : overlaps())
+          triangles += overlap.polygon.n - 2;
+        points_.reserve(points_.size() + triangles * segment_rule(degree_).size());
+        trace_.places.reserve(points_.capacity());
+        trace_.polygons.reserve(trace_.polygons.size() + overlaps().size());
+      }
+
       /// Unless it is next to nothing, or the cells do not face each other.
       void add_overlap(const Shadow      &window,
                        const CellPlane   &plane,
@@ -297,8 +250,11 @@ namespace Nodus
       }
 
       /// False where the slave face is folded over.
-      bool
-      add_points(const unsigned int cell, const CellPlane &plane, const FlatFace &slave_facet, const Overlap &overlap)
+      bool add_points(const unsigned int cell,
+                      const CellPlane   &plane,
+                      const FlatFace    &slave_facet,
+                      const FlatFace    &slave_face,
+                      const Overlap     &overlap)
       {
         const Polygon &polygon = overlap.polygon;
         const auto    &rule    = segment_rule(degree_);
@@ -319,17 +275,16 @@ namespace Nodus
             if (!slave_facet.invert(p, xi, eta))
               return false;
             // the partner lies on the smoothed faces, straight across
-            const Point x = slave_.position(f_, xi, eta);
-            if (!master_face.invert(plane(x), master.xi, master.eta))
+            const FlatFace::Place x = slave_face.place(xi, eta);
+            if (!master_face.invert(x.x, master.xi, master.eta))
             {
               master.xi  = middle_xi;
               master.eta = middle_eta;
               continue;
             }
-            const Vector3 gap = master_.position(overlap.m, master.xi, master.eta) - x;
-            if (gap.norm() > reach_)
+            const double depth = x.height - master_face.place(master.xi, master.eta).height;
+            if (std::abs(depth) > reach_)
               continue;
-            const double depth = -(gap * plane.normal);
             if (self_ != nullptr && depth > 0. && depth > self_->visible(f_, xi, eta, overlap.m, master.xi, master.eta))
               continue;
             const double part = overlap.part * seen(overlap, p);

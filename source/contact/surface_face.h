@@ -147,6 +147,12 @@ namespace Nodus
       for (unsigned int n = 0; n < shape.n; ++n)
         add(shape, n, points[n]);
     }
+    FaceGeometry(const Point &x_, const Vector3 &along_xi, const Vector3 &along_eta)
+        : x(x_)
+        , d_xi(along_xi)
+        , d_eta(along_eta)
+    {
+    }
     /// x_xi x x_eta, length = surface element.
     Vector3 area_vector() const
     {

@@ -31,11 +31,21 @@ namespace Nodus
     {
       shape_degree_ = 2;
       smooth();
-      return;
     }
-    for (const SurfaceFace &face : faces)
-      for (const unsigned int n : face.nodes)
-        points_.push_back(positions[n]);
+    else
+      for (const SurfaceFace &face : faces)
+        for (const unsigned int n : face.nodes)
+          points_.push_back(positions[n]);
+    find_powers();
+  }
+
+  void SurfaceGeometry::find_powers()
+  {
+    powers_.reserve(faces_.size());
+    for (unsigned int f = 0; f < faces_.size(); ++f)
+      powers_.emplace_back(shape_degree_,
+                           [points = shape_points(f)](const unsigned int n)
+                           { return FacePowers::values(Vector3(points[n])); });
   }
 
   double SurfaceGeometry::bulge() const
@@ -303,8 +313,12 @@ namespace Nodus
 
   Vector3 SurfaceGeometry::averaged_normal(const unsigned int f, const double xi, const double eta) const
   {
-    const FaceShape shape(degree_, xi, eta);
-    Vector3         normal;
+    return averaged_normal(f, FaceShape(degree_, xi, eta));
+  }
+
+  Vector3 SurfaceGeometry::averaged_normal(const unsigned int f, const FaceShape &shape) const
+  {
+    Vector3 normal;
     for (unsigned int n = 0; n < shape.n; ++n)
       normal += shape.value[n] * nodal_normal(f, n);
     return normal / normal.norm();

@@ -1,6 +1,7 @@
 #ifndef nodus_contact_surface_geometry_h
 #define nodus_contact_surface_geometry_h
 
+#include "contact/face_powers.h"
 #include "contact/surface.h"
 #include <nodus/parameters/parameters.h>
 
@@ -79,17 +80,13 @@ namespace Nodus
 
     FaceGeometry at(const unsigned int f, const double xi, const double eta) const
     {
-      const FaceShape shape(shape_degree_, xi, eta);
-      return FaceGeometry(shape, points_.data() + f * shape.n);
+      const FacePowers::Tangents t = powers_[f].tangents(xi, eta);
+      return FaceGeometry(Point(t.x[0], t.x[1], t.x[2]), FacePowers::vector(t.d_xi), FacePowers::vector(t.d_eta));
     }
     Point position(const unsigned int f, const double xi, const double eta) const
     {
-      const FaceShape    shape(shape_degree_, xi, eta);
-      const Point *const points = shape_points(f);
-      Point              x;
-      for (unsigned int n = 0; n < shape.n; ++n)
-        x += shape.value[n] * points[n];
-      return x;
+      const FacePowers::Values x = powers_[f].tangents(xi, eta).x;
+      return Point(x[0], x[1], x[2]);
     }
     /// The face is the Lagrange interpolation of these (shape_degree + 1)^2 points.
     unsigned int shape_degree() const
@@ -104,6 +101,7 @@ namespace Nodus
     Vector3 normal(unsigned int f, double xi, double eta) const;
     /// Outward unit normal interpolated from the averaged ones of the nodes.
     Vector3 averaged_normal(unsigned int f, double xi, double eta) const;
+    Vector3 averaged_normal(unsigned int f, const FaceShape &shape) const;
     /// Edges xi = 0, 1, eta = 0, 1 of a face that no other face shares.
     using Rim = std::array<bool, 4>;
     /// Outward unit normal of the face, which turns into the averaged one in a strip along its edges but those on the
@@ -177,9 +175,11 @@ namespace Nodus
     std::vector<unsigned int> start_, occurrence_;
     std::vector<FaceShape>    node_shapes_; ///< of the displacement at the nodes of a face
     std::vector<Point>        points_;      ///< per face, (shape_degree + 1)^2
-    std::vector<Vector3>      offsets_;     ///< of these, where the surface is smoothed
+    std::vector<FacePowers>   powers_;      ///< per face, of these
+    std::vector<FacePowers>   offsets_;     ///< per face, of these, where the surface is smoothed
 
     void average_normals();
+    void find_powers();
     /// Calls g(other, how much it belongs) for the faces around a surface node that belong to one smooth surface with
     /// that of @p own. Both are faces at a node of theirs: indices into unit_.
     template <typename Function>

@@ -105,7 +105,7 @@ namespace Nodus
   void SurfaceGeometry::smooth()
   {
     points_.resize(9 * faces_.size());
-    offsets_.resize(points_.size());
+    offsets_.reserve(faces_.size());
     std::vector<FaceShape> facet; // at the nine points
     for (unsigned int n = 0; n < 9; ++n)
       facet.emplace_back(degree_, 0.5 * (n % 3), 0.5 * (n / 3));
@@ -120,8 +120,9 @@ namespace Nodus
       // eight-node face
       x[4] = Point(0.5 * (Vector3(x[1]) + Vector3(x[3]) + Vector3(x[5]) + Vector3(x[7])) -
                    0.25 * (Vector3(x[0]) + Vector3(x[2]) + Vector3(x[6]) + Vector3(x[8])));
-      for (unsigned int n = 0; n < 9; ++n)
-        offsets_[9 * f + n] = x[n] - FaceGeometry(faces_[f], facet[n], positions_).x;
+      offsets_.emplace_back(2,
+                            [&](const unsigned int n)
+                            { return FacePowers::values(x[n] - FaceGeometry(faces_[f], facet[n], positions_).x); });
     }
   }
 
@@ -189,11 +190,6 @@ namespace Nodus
   {
     if (shape_degree_ == degree_)
       return Vector3();
-    const FaceShape      shape(shape_degree_, xi, eta);
-    const Vector3 *const offsets = offsets_.data() + f * shape.n;
-    Vector3              result;
-    for (unsigned int n = 0; n < shape.n; ++n)
-      result += shape.value[n] * offsets[n];
-    return result;
+    return FacePowers::vector(offsets_[f].tangents<2>(xi, eta).x);
   }
 } // namespace Nodus
