@@ -36,16 +36,15 @@ namespace Nodus
     std::vector<Point>     middle;
     for (unsigned int b = 0; b < model.bodies.size(); ++b)
       middle.push_back(model.bodies.bounding_box(b).center());
-    const dealii::IndexSet owned = u.locally_owned_elements();
+    const double *const at = u.begin(), *const out = missing.begin(), *const in = acting.begin(); // owned values
     for (unsigned int i = 0; i < nodes.X.size(); ++i)
     {
-      const DoFIndex dof = owned.nth_index_in_set(dim * i);
-      Vector3        arm = nodes.X[i] - middle[nodes.body[i]], force, acts;
+      Vector3 arm = nodes.X[i] - middle[nodes.body[i]], force, acts;
       for (unsigned int c = 0; c < dim; ++c)
       {
-        arm[c] += u(dof + c);
-        force[c] = missing(dof + c);
-        acts[c]  = acting(dof + c);
+        arm[c] += at[dim * i + c];
+        force[c] = out[dim * i + c];
+        acts[c]  = in[dim * i + c];
       }
       double *const sum = sums.data() + n * nodes.body[i];
       add_force(sum, arm, force);

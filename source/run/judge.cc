@@ -2,6 +2,7 @@
 #include "contact/site_values.h"
 #include "mesh/sides.h"
 #include "parallel/largest.h"
+#include "parallel/owned_values.h"
 #include "run/body_balance.h"
 #include "run/increment_loops.h"
 #include "run/state_visitors.h"
@@ -250,14 +251,14 @@ namespace Nodus
     contact_->add_forces(contact);
     const double scale = std::max({largest_entry(internal), largest_entry(external), largest_entry(contact), force_});
 
-    Vector missing(internal);
+    Vector &missing = internal;
     missing -= external;
     missing += contact;
-    const double rigid = rigid_body_imbalance(model_, missing, contact_->residual(), scale);
+    const double      rigid = rigid_body_imbalance(model_, missing, contact_->residual(), scale);
+    const OwnedValues owned(missing);
     for (const auto i : contact_->surfaces().layout().owned[0])
       if (constraints.is_constrained(i))
-        missing(i) = 0.;
-    missing.compress(dealii::VectorOperation::insert);
+        owned(i) = 0.;
     contact -= external;
     verdict[Measure::nodes] = {
         std::max(largest_entry(missing) / scale, rigid), tolerance(model_.parameters.newton.force_tolerance), ""};
