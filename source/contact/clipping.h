@@ -48,8 +48,8 @@ namespace Nodus
     }
     bool contains(const Point2 &p) const
     {
-      for (unsigned int i = 0; i < n; ++i)
-        if (cross(corner[(i + 1) % n] - corner[i], p - corner[i]) < 0.)
+      for (unsigned int i = 0, before = n - 1; i < n; before = i++)
+        if (cross(corner[i] - corner[before], p - corner[before]) < 0.)
           return false;
       return true;
     }

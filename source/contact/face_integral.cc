@@ -99,8 +99,7 @@ namespace Nodus
           , part_(face.dual_part())
           , exact_(face.exact_part())
           , counted_(face.coverage.counted)
-          , measured_(degree,
-                      [&](const unsigned int node) { return FacePowers::values(Vector3(measure[face_.nodes[node]])); })
+          , measured_(degree, [&](const unsigned int node) { return Vector3(measure[face_.nodes[node]]); })
           , rows_{face.pair, face_.number, {}, {}, {}, {}, {}}
       {
       }

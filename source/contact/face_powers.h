@@ -3,8 +3,6 @@
 
 #include <nodus/base/types.h>
 
-#include <Eigen/Dense>
-
 #include <array>
 
 namespace Nodus
@@ -14,25 +12,26 @@ namespace Nodus
   class FacePowers
   {
   public:
-    using Values = Eigen::Array4d; ///< the fourth is not used
+    /// In a register, the fourth is not used. Never handed over by value: how depends on the machine that is compiled
+    /// for, which is not the same for all that includes this.
+    typedef double Values __attribute__((vector_size(4 * sizeof(double))));
 
-    static Values values(const Vector3 &v)
-    {
-      return Values(v[0], v[1], v[2], 0.);
-    }
     static Vector3 vector(const Values &v)
     {
       return Vector3({v[0], v[1], v[2]});
     }
 
-    /// @param node called as node(n) for the Values at the (degree + 1)^2 nodes of the face
+    /// @param node called as node(n) for the vectors at the (degree + 1)^2 nodes of the face
     template <typename Node>
     FacePowers(const unsigned int degree, const Node &node)
         : degree_(degree)
     {
       for (unsigned int j = 0, n = 0; j <= degree; ++j)
         for (unsigned int i = 0; i <= degree; ++i, ++n)
-          powers_[3 * j + i] = node(n);
+        {
+          const Vector3 v    = node(n);
+          powers_[3 * j + i] = Values{v[0], v[1], v[2], 0.};
+        }
       for (unsigned int j = 0; j <= degree; ++j)
         make_powers(powers_.data() + 3 * j, 1);
       for (unsigned int i = 0; i <= degree; ++i)
@@ -65,9 +64,9 @@ namespace Nodus
           x    = c[0] + xi * (c[1] + xi * c[2]);
           d_xi = c[1] + 2. * xi * c[2];
         }
-        sum.d_eta = j == degree ? Values(0.) : Values(sum.x + eta * sum.d_eta);
-        sum.x     = j == degree ? x : Values(x + eta * sum.x);
-        sum.d_xi  = j == degree ? d_xi : Values(d_xi + eta * sum.d_xi);
+        sum.d_eta = j == degree ? Values{} : sum.x + eta * sum.d_eta;
+        sum.x     = j == degree ? x : x + eta * sum.x;
+        sum.d_xi  = j == degree ? d_xi : d_xi + eta * sum.d_xi;
       }
       return sum;
     }

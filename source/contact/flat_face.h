@@ -19,7 +19,7 @@ namespace Nodus
                 [&](const unsigned int n)
                 {
                   const Vector3 r = node(n) - plane.origin;
-                  return Values(r * plane.axis[0], r * plane.axis[1], r * plane.normal, 0.);
+                  return Vector3({r * plane.axis[0], r * plane.axis[1], r * plane.normal});
                 })
     {
     }
@@ -42,8 +42,8 @@ namespace Nodus
     };
     Place place(const double xi, const double eta) const
     {
-      const Values x = face_.tangents(xi, eta).x;
-      return {Point2(x[0], x[1]), x[2]};
+      const FacePowers::Tangents t = face_.tangents(xi, eta);
+      return {Point2(t.x[0], t.x[1]), t.x[2]};
     }
 
   private:
@@ -57,13 +57,13 @@ namespace Nodus
     template <unsigned int degree>
     bool invert(const Point2 &p, double &xi, double &eta) const
     {
-      const Values to(p[0], p[1], 0., 0.);
+      const Values to{p[0], p[1], 0., 0.};
       for (unsigned int iteration = 0; iteration < 20; ++iteration)
       {
         const FacePowers::Tangents t       = face_.tangents<degree>(xi, eta);
         const Values               r       = to - t.x;
-        const double               det     = cross(t.d_xi, t.d_eta);
-        const double               step_xi = cross(r, t.d_eta) / det, step_eta = cross(t.d_xi, r) / det;
+        const double               inverse = 1. / cross(t.d_xi, t.d_eta);
+        const double               step_xi = inverse * cross(r, t.d_eta), step_eta = inverse * cross(t.d_xi, r);
         xi += step_xi;
         eta += step_eta;
         if (!(std::abs(xi) + std::abs(eta) < 10.))

@@ -44,8 +44,7 @@ namespace Nodus
     powers_.reserve(faces_.size());
     for (unsigned int f = 0; f < faces_.size(); ++f)
       powers_.emplace_back(shape_degree_,
-                           [points = shape_points(f)](const unsigned int n)
-                           { return FacePowers::values(Vector3(points[n])); });
+                           [points = shape_points(f)](const unsigned int n) { return Vector3(points[n]); });
   }
 
   double SurfaceGeometry::bulge() const

@@ -85,8 +85,7 @@ namespace Nodus
     }
     Point position(const unsigned int f, const double xi, const double eta) const
     {
-      const FacePowers::Values x = powers_[f].tangents(xi, eta).x;
-      return Point(x[0], x[1], x[2]);
+      return Point(FacePowers::vector(powers_[f].tangents(xi, eta).x));
     }
     /// The face is the Lagrange interpolation of these (shape_degree + 1)^2 points.
     unsigned int shape_degree() const

@@ -120,9 +120,8 @@ namespace Nodus
       // eight-node face
       x[4] = Point(0.5 * (Vector3(x[1]) + Vector3(x[3]) + Vector3(x[5]) + Vector3(x[7])) -
                    0.25 * (Vector3(x[0]) + Vector3(x[2]) + Vector3(x[6]) + Vector3(x[8])));
-      offsets_.emplace_back(2,
-                            [&](const unsigned int n)
-                            { return FacePowers::values(x[n] - FaceGeometry(faces_[f], facet[n], positions_).x); });
+      offsets_.emplace_back(
+          2, [&](const unsigned int n) { return x[n] - FaceGeometry(faces_[f], facet[n], positions_).x; });
     }
   }
 
