@@ -9,6 +9,9 @@ namespace Nodus
 
   namespace
   {
+    /// Turns of axes up to this leave ones that are less than round-off.
+    constexpr double smallest_turn = 1e-9;
+
     inline void sqrt(const Lanes &x, Lanes &result)
     {
       for (unsigned int v = 0; v < n_lanes; ++v)
@@ -16,7 +19,8 @@ namespace Nodus
     }
 
     /// Eigenvalues and eigenvectors n[axis] of a symmetric tensor: cyclic Jacobi (Golub & Van Loan, Matrix
-    /// Computations, section 8.5). Convergence is quadratic; after five sweeps, 3x3 matrices are diagonal to round-off.
+    /// Computations, section 8.5). Convergence is quadratic; after five sweeps, 3x3 matrices are diagonal to round-off,
+    /// and after one that turns by less than the root of that.
     void find_axes(const Lanes (&tensor)[n_pairs], Lanes (&value)[dim], Lanes (&n)[dim][dim])
     {
       Lanes A[dim][dim];
@@ -26,7 +30,10 @@ namespace Nodus
           A[i][j] = tensor[pair_index[i][j]];
           n[i][j] = Lanes{} + (i == j ? 1. : 0.);
         }
-      for (unsigned int sweep = 0; sweep < 5; ++sweep)
+      bool turns = true;
+      for (unsigned int sweep = 0; sweep < 5 && turns; ++sweep)
+      {
+        Lanes turned{}; // squares of the tangents
         for (unsigned int r = 0; r < dim; ++r)
         {
           const unsigned int p = (r + 1) % dim, q = (r + 2) % dim;
@@ -36,6 +43,7 @@ namespace Nodus
           // the tangent of the smaller angle; 0 for a diagonal matrix
           const Lanes denominator = (difference >= 0. ? difference + root : difference - root);
           const Lanes tangent     = twice / (denominator == 0. ? Lanes{} + 1. : denominator);
+          turned += tangent * tangent;
           sqrt(1. + tangent * tangent, cosine);
           cosine           = 1. / cosine;
           const Lanes sine = tangent * cosine, moved = tangent * A[p][q];
@@ -52,6 +60,10 @@ namespace Nodus
             n[q][i] = sine * n_p + cosine * n_q;
           }
         }
+        turns = false;
+        for (unsigned int v = 0; v < n_lanes; ++v)
+          turns = turns || !(turned[v] < smallest_turn * smallest_turn);
+      }
       for (unsigned int a = 0; a < dim; ++a)
         value[a] = A[a][a];
     }
@@ -128,13 +140,15 @@ namespace Nodus
       for (unsigned int a = 0; a < dim; ++a)
       {
         stress[a][v] = principal.stress[a];
+        if (has_history)
+          elastic_squared[a][v] = std::exp(2. * principal.elastic_strain[a]);
+        if (!C)
+          continue;
         for (unsigned int c = 0; c < dim; ++c)
           on_axes[a][c][v] = principal.modulus[a][c] - (a == c ? 2. * principal.stress[a] : 0.);
         const unsigned int c = (a + 1) % dim, d = (a + 2) % dim;
         const double       z = principal.strain[c] - principal.strain[d];
         mixed[a][v]          = (principal.secant[a] * z_coth(z) - principal.stress[c] - principal.stress[d]) / 2.;
-        if (has_history)
-          elastic_squared[a][v] = std::exp(2. * principal.elastic_strain[a]);
       }
       if (has_history)
         after[n_pairs][v] = principal.plastic_strain;
