@@ -104,6 +104,12 @@ namespace Nodus
       offset += weight * surfaces.nodes()[node].offset;
     }
 
+    /// Whether points come from overlaps rather than from a rule.
+    bool has_segments(const ContactPairParameters &pair, const ContactGeometry &geometry, const unsigned int p)
+    {
+      return geometry.rigid[p] == nullptr && pair.integration == ContactPairParameters::Integration::segment;
+    }
+
     /// Whether a pair has averaged jumps, and acts.
     bool
     averages(const std::vector<ContactPairParameters> &pairs, const ContactSurfaces &surfaces, const unsigned int p)
@@ -208,7 +214,7 @@ namespace Nodus
                                  Face                        &face)
   {
     const unsigned int p = face.pair, f = face.face;
-    if (geometry.rigid[p] == nullptr && pair.integration == ContactPairParameters::Integration::segment)
+    if (has_segments(pair, geometry, p))
       face.coverage = segment_points(geometry, p, f, face.points, face.trace);
     else
       face.coverage = {face_points(geometry, p, f, rule, face.points)};
@@ -308,7 +314,8 @@ namespace Nodus
     {
       if (!averages(pairs, surfaces, p))
         continue;
-      const auto rule = face_rule(pairs[p], surfaces.degree());
+      const auto rule =
+          has_segments(pairs[p], geometry, p) ? dealii::Quadrature<2>() : face_rule(pairs[p], surfaces.degree());
       for (unsigned int f = 0; f < geometry.slave[p].n_faces(); ++f)
       {
         if (geometry.slave[p].face(f).owner != rank)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace Nodus
@@ -94,6 +95,14 @@ namespace Nodus
       }
       return changes;
     }
+
+    /// Whether it cannot change its sign in [0, 1]: it lies between the least and the largest of its Bernstein
+    /// coefficients.
+    bool keeps_sign(const std::array<double, 4> &c)
+    {
+      const double b[4] = {c[0], c[0] + c[1] / 3., c[0] + (2. * c[1] + c[2]) / 3., c[0] + c[1] + c[2] + c[3]};
+      return std::min({b[0], b[1], b[2], b[3]}) > 0. || std::max({b[0], b[1], b[2], b[3]}) < 0.;
+    }
   } // namespace
 
   std::vector<Crossing> find_crossings(const Way &p, const Way &a, const Way &b, const Way &c)
@@ -105,6 +114,8 @@ namespace Nodus
     const std::array<double, 4> volume = {
         {q.start * n[0], q.start * n[1] + q.change * n[0], q.start * n[2] + q.change * n[1], q.change * n[2]}};
     std::vector<Crossing> found;
+    if (keeps_sign(volume))
+      return found;
     for (const auto &[t, was_outside] : sign_changes(volume))
     {
       const Vector3 r = q.at(t), along = e.at(t), across = f.at(t), normal = cross(along, across);
@@ -143,11 +154,11 @@ namespace Nodus
             own.push_back(face.owner == rank);
           }
         }
-    using Edge      = std::array<unsigned int, 2>;
+    using Edge      = std::uint64_t; // both nodes, the lower one first
     const auto edge = [](const Triangle &triangle, const unsigned int opposite)
     {
       const unsigned int a = triangle.nodes[(opposite + 1) % 3], b = triangle.nodes[(opposite + 2) % 3];
-      return Edge{{std::min(a, b), std::max(a, b)}};
+      return Edge(std::min(a, b)) << 32 | std::max(a, b);
     };
     std::vector<Edge> edges; // in ascending order, of two triangles twice
     edges.reserve(3 * all.size());
@@ -174,9 +185,8 @@ namespace Nodus
       for (unsigned int v = 0; v < 3; ++v)
         if (is_alone(edge(triangle, v)))
         {
-          triangle.rim[v] = true;
-          for (const unsigned int n : edge(triangle, v))
-            on_rim_[n] = true;
+          triangle.rim[v]                      = true;
+          on_rim_[triangle.nodes[(v + 1) % 3]] = on_rim_[triangle.nodes[(v + 2) % 3]] = true;
         }
       if (!own[i])
         continue;

@@ -243,7 +243,10 @@ namespace Nodus
     const auto        &constraints = model_.boundary_conditions->homogeneous_constraints();
     const NodalForces &given       = equilibrium_.forces();
     const Vector       u           = model_.with_ghosts(unknowns_.block(0));
-    Vector             internal(given.internal), external(given.external), contact(given.contact); // their maps
+    Vector             internal, external, contact;
+    for (const auto &[v, map] :
+         {std::make_pair(&internal, &given.internal), {&external, &given.external}, {&contact, &given.contact}})
+      v->reinit(*map, true);
     model_.solid->forces(u, t, internal, external);
     external += given.released;
     external += given.drag;
