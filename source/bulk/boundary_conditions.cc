@@ -352,6 +352,7 @@ namespace Nodus
     }
     homogeneous_.copy_from(lines_);
     homogeneous_.close();
+    increment_.copy_from(homogeneous_);
   }
 
   bool BoundaryConditions::set_time(const double t)
@@ -380,11 +381,12 @@ namespace Nodus
 
   const AffineConstraints<double> &BoundaryConditions::increment_constraints(const Vector &u)
   {
-    // from the unresolved lines: close() passes the inhomogeneities on to hanging nodes
-    increment_.copy_from(lines_);
+    // where nodes hang, from the unresolved lines: close() passes the inhomogeneities on to them
+    const auto lines = lines_.get_lines();
+    if (std::any_of(lines.begin(), lines.end(), [](const auto &line) { return !line.entries.empty(); }))
+      increment_.copy_from(lines_);
     for (const auto &one : prescribed_)
-      if (!is_driven(one.condition))
-        increment_.set_inhomogeneity(one.dof, one.value - u(one.dof));
+      increment_.set_inhomogeneity(one.dof, is_driven(one.condition) ? 0. : one.value - u(one.dof));
     if (couples_)
     {
       assembly_.copy_from(assembly_lines_);
