@@ -42,6 +42,7 @@ namespace Nodus
       left               = 1. - 3. * mu_ * increment / trial;
       along              = slope / (3. * mu_ + slope);
     }
+    const double across = left == 1. ? 0. : 2. * mu_ * (along - left) / (norm * norm);
     for (unsigned int a = 0; a < dim; ++a)
     {
       principal.elastic_strain[a] = log_J / 3. + left * deviator[a];
@@ -49,8 +50,7 @@ namespace Nodus
       principal.secant[a]         = 2. * mu_ * left;
       for (unsigned int b = 0; b < dim; ++b)
         principal.modulus[a][b] =
-            kappa_ + 2. * mu_ * left * ((a == b ? 1. : 0.) - 1. / 3.) +
-            (left == 1. ? 0. : 2. * mu_ * (along - left) * deviator[a] * deviator[b] / (norm * norm));
+            kappa_ + 2. * mu_ * left * ((a == b ? 1. : 0.) - 1. / 3.) + across * deviator[a] * deviator[b];
     }
   }
 

@@ -41,8 +41,9 @@ namespace Nodus
     /// average. Distances below a millionth of @p scale are not told apart.
     Tilt median(const std::vector<Tilt> &seen, const double scale)
     {
-      const auto pull = [&](const Tilt &distance) { return 1. / std::hypot(distance.norm(), 1e-6 * scale); };
-      Tilt       result;
+      const auto pull = [&](const Tilt &distance)
+      { return 1. / std::sqrt(distance.norm_square() + 1e-12 * scale * scale); };
+      Tilt result;
       for (const Tilt &tilt : seen)
         result += tilt / (1.5 * seen.size());
       for (unsigned int iteration = 0; iteration < 100; ++iteration)

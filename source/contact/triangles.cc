@@ -160,34 +160,33 @@ namespace Nodus
       const unsigned int a = triangle.nodes[(opposite + 1) % 3], b = triangle.nodes[(opposite + 2) % 3];
       return Edge(std::min(a, b)) << 32 | std::max(a, b);
     };
-    std::vector<Edge> edges; // in ascending order, of two triangles twice
+    std::vector<std::pair<Edge, unsigned int>> edges; // with three times the triangle and the corner opposite to it
     edges.reserve(3 * all.size());
-    for (const Triangle &triangle : all)
+    for (unsigned int i = 0; i < all.size(); ++i)
     {
-      const Point *const p[3] = {&x[triangle.nodes[0]], &x[triangle.nodes[1]], &x[triangle.nodes[2]]};
-      const Vector3      area = cross(*p[1] - *p[0], *p[2] - *p[0]);
+      const Triangle    &triangle = all[i];
+      const Point *const p[3]     = {&x[triangle.nodes[0]], &x[triangle.nodes[1]], &x[triangle.nodes[2]]};
+      const Vector3      area     = cross(*p[1] - *p[0], *p[2] - *p[0]);
       for (unsigned int v = 0; v < 3; ++v)
       {
         normals_[triangle.nodes[v]] += area;
-        edges.push_back(edge(triangle, v));
+        edges.emplace_back(edge(triangle, v), 3 * i + v);
       }
     }
     std::sort(edges.begin(), edges.end());
-    const auto is_alone = [&](const Edge &one)
-    {
-      const auto at = std::lower_bound(edges.begin(), edges.end(), one);
-      return at + 1 == edges.end() || *(at + 1) != one;
-    };
+    for (unsigned int e = 0; e < edges.size(); ++e)
+      if ((e == 0 || edges[e - 1].first != edges[e].first) &&
+          (e + 1 == edges.size() || edges[e + 1].first != edges[e].first))
+      {
+        const unsigned int v                 = edges[e].second % 3;
+        Triangle          &triangle          = all[edges[e].second / 3];
+        triangle.rim[v]                      = true;
+        on_rim_[triangle.nodes[(v + 1) % 3]] = on_rim_[triangle.nodes[(v + 2) % 3]] = true;
+      }
     std::vector<TreeBox> boxes;
     for (unsigned int i = 0; i < all.size(); ++i)
     {
-      Triangle &triangle = all[i];
-      for (unsigned int v = 0; v < 3; ++v)
-        if (is_alone(edge(triangle, v)))
-        {
-          triangle.rim[v]                      = true;
-          on_rim_[triangle.nodes[(v + 1) % 3]] = on_rim_[triangle.nodes[(v + 2) % 3]] = true;
-        }
+      const Triangle &triangle = all[i];
       if (!own[i])
         continue;
       boxes.push_back(box_of({x[triangle.nodes[0]], x[triangle.nodes[1]], x[triangle.nodes[2]]}));
