@@ -336,7 +336,6 @@ namespace Nodus
   {
     lines_ = no_constraints(dof_handler_);
     hanging_.add_to(lines_);
-
     // a hanging node of a region follows its masters, which belong to the region as well
     std::vector<Prescribed> not_hanging;
     for (const auto &one : prescribed_)
@@ -382,8 +381,7 @@ namespace Nodus
   const AffineConstraints<double> &BoundaryConditions::increment_constraints(const Vector &u)
   {
     // where nodes hang, from the unresolved lines: close() passes the inhomogeneities on to them
-    const auto lines = lines_.get_lines();
-    if (std::any_of(lines.begin(), lines.end(), [](const auto &line) { return !line.entries.empty(); }))
+    if (lines_.max_constraint_indirections() > 0)
       increment_.copy_from(lines_);
     for (const auto &one : prescribed_)
       increment_.set_inhomogeneity(one.dof, is_driven(one.condition) ? 0. : one.value - u(one.dof));
