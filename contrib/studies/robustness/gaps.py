@@ -10,6 +10,7 @@ import numpy as np
 import geometry
 from geometry import shape
 
+FLUSH = 0.01  # of TOLERANCE: sites beyond a rim by no more are on it, however deep
 TOLERANCE = 0.05  # Projection tolerance by default [face sizes]; sites that were closed keep their partner up to twice that
 # Spreads of master nodes that balance moments [areas around a node], as of geometry.fading (section 7): when their own count, and
 # when those around them do not share.
@@ -129,6 +130,7 @@ class Pair:
         choose(rows.normal, preferred, *choices)
         face, xi, eta = face[hit], xi[hit], eta[hit]
         rows.distance[hit] = ((x[hit] - self.master.at(face, xi, eta)[0]) * rows.normal[hit]).sum(1)
+        rows.unsure[hit] |= rows.paired[hit] & (self.sunk(rows.distance[hit], over[hit], face) > TOLERANCE)
         rows.g[hit, self.nodes[hit]] = 1
         np.subtract.at(rows.g, (hit[:, None], self.master.faces[face]), shape(self.degree, xi, eta)[0])
         masters = self.master.faces[face]
@@ -169,6 +171,12 @@ class Pair:
         kind = self.keys.get("Quadrature rule", "Gauss")
         return kind, self.degree + 1 if kind == "Gauss" else 2 * self.degree + 1
 
+    def sunk(self, depth, over, face):
+        """How far sites are beyond the rim of the master [face sizes], their depth [length] included where they are below it: what slid
+        off and sunk finds no partner again, what had one keeps it."""
+        below = np.maximum(depth, 0) / self.master.size[face]
+        return np.where(over > FLUSH * TOLERANCE, np.hypot(over, below), over)
+
     def integration_points(self):
         """Distance, face, local coordinates, weights with area, whether they have a partner, how far they hang over the rim
         [Projection tolerance] (n,), and normals (n, 3) of the points of an integration point pair."""
@@ -179,6 +187,7 @@ class Pair:
             normal[hit] = self.normal_of_master(face[hit], a[hit], b[hit])
         apart = self.slave.at(f[hit], xi[hit], eta[hit])[0] - self.master.at(face[hit], a[hit], b[hit])[0]
         distance[hit] = (apart * normal[hit]).sum(1)
+        over[hit] = self.sunk(distance[hit], over[hit], face[hit])
         return distance, f, xi, eta, w * self.slave.element(f, xi, eta), face >= 0, over / TOLERANCE, normal
 
     def _face_points(self, last):
