@@ -1,10 +1,10 @@
 #ifndef nodus_rigid_triangle_surface_h
 #define nodus_rigid_triangle_surface_h
 
+#include "base/box_tree.h"
 #include "rigid/rigid_surface.h"
 #include "rigid/triangle_mesh.h"
 #include "rigid/triangle_patch.h"
-#include "base/box_tree.h"
 
 #include <array>
 #include <limits>
@@ -68,7 +68,7 @@ namespace Nodus
     std::vector<TrianglePatch> patches_;
     std::vector<double>        bulge_; ///< of a patch over its triangle, at most [length]
     std::vector<double>        size_;  ///< square root of the area [length]
-    BoxTree               tree_;
+    BoxTree                    tree_;
   };
 } // namespace Nodus
 
