@@ -173,8 +173,9 @@ namespace Nodus
     const unsigned int pair    = surfaces_.pair(site);
     const double       modulus = normal_augmentation_[pair] * surfaces_.face_size(pair);
     const double       largest = threshold_floor_[pair] / relative_threshold_floor;
-    // a power of two of the modulus: that it follows the iterate is not in the tangent
-    return largest > 0. ? relative_void_threshold * std::ldexp(modulus, std::ilogb(largest / modulus)) : 0.;
+    // the nearest power of two of the modulus: that it follows the iterate is not in the tangent, and from one to the
+    // next it changes at no round number, which round-off would push to and fro
+    return largest > 0. ? relative_void_threshold * std::ldexp(modulus, std::lround(std::log2(largest / modulus))) : 0.;
   }
 
   void Status::update_floor()
