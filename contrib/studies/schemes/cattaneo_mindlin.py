@@ -219,7 +219,7 @@ def main():
     with open(os.path.join(HERE, "cattaneo_mindlin.md"), "w") as file:
         file.write(TEXT.format(table=common.table(part, HEADER, rows)))
     figure, axes = common.figure(7.0, 4.2)
-    for (label, values, (r, q)), marker in zip(curves, "os^xv"):
+    for (label, values, (r, q)), marker in zip(curves, "os^xvd"):
         axes.plot(r / values["a"], q / (FRICTION * values["p0"]), marker, fillstyle="none", ms=4, label=label)
     values = curves[-1][1]
     r = np.linspace(0, 1.3, 500)
