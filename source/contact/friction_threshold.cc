@@ -168,16 +168,6 @@ namespace Nodus
     update_floor();
   }
 
-  double Status::void_threshold(const unsigned int site) const
-  {
-    const unsigned int pair    = surfaces_.pair(site);
-    const double       modulus = normal_augmentation_[pair] * surfaces_.face_size(pair);
-    const double       largest = threshold_floor_[pair] / relative_threshold_floor;
-    // the nearest power of two of the modulus: that it follows the iterate is not in the tangent, and from one to the
-    // next it changes at no round number, which round-off would push to and fro
-    return largest > 0. ? relative_void_threshold * std::ldexp(modulus, std::lround(std::log2(largest / modulus))) : 0.;
-  }
-
   void Status::update_floor()
   {
     threshold_floor_.assign(pairs_.size(), 0.);
@@ -187,5 +177,14 @@ namespace Nodus
       floor         = std::max(floor, -relative_threshold_floor * now_.threshold[k]);
     }
     dealii::Utilities::MPI::max(threshold_floor_, surfaces_.layout().communicator, threshold_floor_);
+    for (unsigned int p = 0; p < pairs_.size(); ++p)
+    {
+      const double modulus = normal_augmentation_[p] * surfaces_.face_size(p);
+      const double largest = threshold_floor_[p] / relative_threshold_floor;
+      // the nearest power of two of the modulus: that it follows the iterate is not in the tangent, and from one to the
+      // next it changes at no round number, which round-off would push to and fro
+      void_threshold_[p] =
+          largest > 0. ? relative_void_threshold * std::ldexp(modulus, std::lround(std::log2(largest / modulus))) : 0.;
+    }
   }
 } // namespace Nodus

@@ -42,6 +42,7 @@ namespace Nodus
       , now_(now)
       , threshold_slope_(surfaces.n_sites(), 0.)
       , threshold_floor_(pairs.size(), 0.)
+      , void_threshold_(pairs.size(), 0.)
       , resolved_(pairs.size(), 0.)
       , ledger_(surfaces.n_sites())
   {

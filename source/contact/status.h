@@ -142,7 +142,10 @@ namespace Nodus
 
     /// s_v, as which integration points without friction weigh in the rows of their multipliers (eq. Q4); 0 where no
     /// site of the pair has friction [pressure].
-    double void_threshold(unsigned int site) const;
+    double void_threshold(const unsigned int site) const
+    {
+      return void_threshold_[surfaces_.pair(site)];
+    }
 
     /// Of the site's pair: null where contact is hard.
     const PressureGapLaw *pressure_gap_law(const unsigned int site) const
@@ -338,6 +341,7 @@ namespace Nodus
     std::vector<double>                                slip_length_;  ///< of the sites, accumulated up to the iterate
     std::vector<double>                                elastic_slip_; ///< of the slave nodes
     std::vector<double>                                threshold_floor_; ///< of the pairs
+    std::vector<double>                                void_threshold_;  ///< of the pairs
     std::vector<double>                                resolved_;        ///< interference, of the pairs
     std::vector<StatusLedger>                          ledger_;
     std::vector<std::vector<char>>                     visited_;
