@@ -127,7 +127,10 @@ class Pair:
         rows.unsure = found & (over > 0.9 * TOLERANCE) & (over <= 2 * TOLERANCE)
         hit = np.where(found)[0]
         rows.normal[:] = self.node_normal
-        choose(rows.normal, preferred, *choices)
+        chosen = choose(rows.normal, preferred, *choices)
+        if self.kind != "slave":  # the closest point is that of the face whose normal was chosen
+            sites = ties[0][chosen]
+            face[sites], xi[sites], eta[sites] = ties[1][chosen], ties[2][chosen], ties[3][chosen]
         face, xi, eta = face[hit], xi[hit], eta[hit]
         rows.distance[hit] = ((x[hit] - self.master.at(face, xi, eta)[0]) * rows.normal[hit]).sum(1)
         rows.unsure[hit] |= rows.paired[hit] & (self.sunk(rows.distance[hit], over[hit], face) > TOLERANCE)
@@ -333,10 +336,12 @@ class Pair:
 
 
 def choose(normals, preferred, sites, choices):
-    """Sets normals (k, 3) of sites (c,) to those of their choices (c, 3) that are nearest to the preferred ones (k, 3)."""
+    """Sets normals (k, 3) of sites (c,) to those of their choices (c, 3) that are nearest to the preferred ones (k, 3). Returns which
+    choices were taken, one of each site."""
     order = np.lexsort((np.linalg.norm(choices - preferred[sites], axis=1), sites))
     order = order[np.unique(sites[order], return_index=True)[1]]
     normals[sites[order]] = choices[order]
+    return order
 
 
 class Segments:

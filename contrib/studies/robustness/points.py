@@ -52,17 +52,18 @@ def multipliers(points, pair, augmentation, found, regularised):
     return best
 
 
-def best_partners(points, pair, augmentation, regularised):
+def best_partners(points, pair, augmentation, regularised, had):
     """multipliers() with the choice of partners that the files leave open: of points of which only the history tells whether they
-    have one. None has that belongs to a node without force, for it would be closed. The others begin with all or with those that would
-    find one today, and change sides, first those of a place together, then each, until no change makes the laws fit better."""
+    have one. None has that belongs to a node without force, for it would be closed. The others begin with all, with those that had one
+    in the last state (had) or with those that would find one today, and change sides, first those of a place together, then each, until
+    no change makes the laws fit better. Returns what multipliers() does and who has a partner (q,)."""
     idle = np.abs(pair.force).max(axis=1) == 0
     unsure = points.unsure & (points.d > 0)
     lost = unsure & (points.phi[:, idle] != 0).any(axis=1)
     open_choices = np.flatnonzero(unsure & ~lost)
     groups = [open_choices[points.place[open_choices] == place] for place in np.unique(points.place[open_choices])]
     best = None
-    for start in (points.found, np.where(unsure, points.fresh, points.found)):
+    for start in (points.found, np.where(unsure, points.fresh | had, points.found), np.where(unsure, points.fresh, points.found)):
         found = start & ~lost
         trial = multipliers(points, pair, augmentation, found, regularised)
         if best is None or trial[2].max() < best[2].max():
@@ -78,10 +79,10 @@ def best_partners(points, pair, augmentation, regularised):
                 chosen[group] = ~chosen[group]
         if best[2].max() == before:
             break
-    return best
+    return *best, chosen
 
 
-def check_points(find, state, pair, row):
+def check_points(find, state, before, pair, row):
     """Depth of the points; Signorini's law in the mean; friction of each node at most what the pressures of its points allow."""
     t, name, mu = state.t, pair.name, state.case.facts["mu"]
     points = Points(pair)
@@ -90,15 +91,17 @@ def check_points(find, state, pair, row):
     find.compare("penetration of integration points beyond bulges [cells]", points.d[sure] / pair.cell - bulge, DEPTH, t, name)
     largest = np.abs(pair.pressure).max()
     if largest == 0:
+        pair.partners = points.fresh
         return
     materials = state.case.facts["materials"]
     young = min(float(materials[int(pair.keys[f"{role} body"]) - 1]["Young's modulus"]) for role in ("Slave", "Master"))
     tolerance = LAW_LOOPS if state.fixed_point else LAW
-    augmentation = young / state.reference_size(pair)
+    augmentation = young / state.reference_sizes(pair)[0]
+    had = getattr(before.pairs[state.pairs.index(pair)], "partners", np.zeros_like(points.found))
     trials = []
     for regularised in (False, True)[: 1 + (int(row["regularised law"]) > 0)]:
-        trials.append((*best_partners(points, pair, augmentation, regularised), regularised))
-    values, closed, law, regularised = min(trials, key=lambda trial: trial[2].max())
+        trials.append((*best_partners(points, pair, augmentation, regularised, had), regularised))
+    values, closed, law, pair.partners, regularised = min(trials, key=lambda trial: trial[2].max())
     # gaps are known to the last digits of positions; friction on a curved surface has a part along the normal of the node
     blur = augmentation * state.noise / largest
     near = closed[:, None] & (points.phi != 0)

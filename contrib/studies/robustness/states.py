@@ -108,10 +108,14 @@ class State:
         pair.shear = traction + pair.pressure[:, None] * pair.normal
         return pair
 
-    def reference_size(self, pair):
-        """Mean size of the slave faces in the reference configuration."""
-        area = sum(part for _, _, part in self._integral(pair.slave.faces))
-        return np.sqrt(area).mean()
+    def reference_sizes(self, pair):
+        """Mean sizes of the slave and of the master faces in the reference configuration: roots of the areas at their middles."""
+        _, d1, d2 = (s[0] for s in geometry.shape(self.bodies.degree, np.full(1, 0.5), np.full(1, 0.5)))
+        sizes = []
+        for side in (pair.slave, pair.master):
+            t1, t2 = (np.einsum("a,fac->fc", d, self.bodies.X[side.faces]) for d in (d1, d2))
+            sizes.append(np.sqrt(np.linalg.norm(np.cross(t1, t2), axis=1)).mean())
+        return sizes
 
     def loads(self):
         """Forces (n, 3) of tractions and springs on the nodes."""
