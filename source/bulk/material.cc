@@ -56,6 +56,27 @@ namespace Nodus
     }
   }
 
+  void Material::stress_and_energy_lanes(const Lanes (&F)[dim][dim],
+                                         const Lanes *const state,
+                                         Lanes (&S)[n_pairs],
+                                         Lanes &energy) const
+  {
+    const unsigned int n = n_state();
+    if (n == 0)
+      evaluate_lanes(F, S, nullptr);
+    std::vector<double> state_of_cell(n);
+    Tensor<2, dim>      F_cell;
+    for (unsigned int v = 0; v < n_lanes; ++v)
+    {
+      take_lane(F, v, F_cell);
+      for (unsigned int i = 0; i < n; ++i)
+        state_of_cell[i] = state[i][v];
+      if (n > 0)
+        set_lane(stress_again(F_cell, state_of_cell.data()), {}, v, S, nullptr);
+      energy[v] = stored_energy(F_cell, state_of_cell.data());
+    }
+  }
+
   void Material::take_lane(const Lanes (&F)[dim][dim], const unsigned int lane, Tensor<2, dim> &F_cell)
   {
     for (unsigned int i = 0; i < dim; ++i)

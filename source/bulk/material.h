@@ -85,6 +85,10 @@ namespace Nodus
     {
       return energy(F);
     }
+    /// Second Piola-Kirchhoff stress and stored_energy() at F and a state that F led to, at a point of n_lanes cells at
+    /// once. The default asks for each: a law with history overrides it to be fast.
+    virtual void
+    stress_and_energy_lanes(const Lanes (&F)[dim][dim], const Lanes *state, Lanes (&S)[n_pairs], Lanes &energy) const;
     /// Work per reference volume that plastic flow took up to a state.
     virtual double dissipation(const double * /*state*/) const
     {

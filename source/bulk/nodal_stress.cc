@@ -5,8 +5,8 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_dgq.h>
-#include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/full_matrix.h>
 
 #include <array>
 
@@ -36,17 +36,21 @@ namespace Nodus
   } // namespace
 
   NodalStress::NodalStress(const DoFHandler<dim> &dof_handler,
-                           const Mapping<dim>    &mapping,
                            const SolidAssembler  &solid,
                            const Vector          &u,
                            const bool             with_strains)
       : n_tensors_(with_strains ? 3 : 1)
   {
-    const auto       &fe    = dof_handler.get_fe();
-    const auto       &owned = dof_handler.locally_owned_dofs();
-    const QGauss<dim> quadrature(fe.degree + 1);
-    FEValues<dim>     fe_values(mapping, fe, quadrature, update_values);
-    const bool        plastic = solid.has_history();
+    const auto        &fe     = dof_handler.get_fe();
+    const auto        &scalar = fe.base_element(0);
+    const auto        &owned  = dof_handler.locally_owned_dofs();
+    const unsigned int n      = scalar.n_dofs_per_cell();
+    const QGauss<dim>  quadrature(fe.degree + 1);
+    FullMatrix<double> shape(quadrature.size(), n);
+    for (unsigned int q = 0; q < quadrature.size(); ++q)
+      for (unsigned int a = 0; a < n; ++a)
+        shape(q, a) = scalar.shape_value(a, quadrature.point(q));
+    const bool plastic = solid.has_history();
 
     const AffineConstraints<double> hanging_nodes = hanging_constraints(dof_handler);
 
@@ -62,22 +66,25 @@ namespace Nodus
         u,
         [&](const DoFHandler<dim>::active_cell_iterator &cell, const std::vector<SolidAssembler::PointResult> &points)
         {
-          fe_values.reinit(cell);
           for (auto &v : cell_values)
             v.reinit(n_dofs);
           cell_mass = 0.;
           for (unsigned int q = 0; q < points.size(); ++q)
           {
             const Tensors tensors = tensors_of(points[q], with_strains);
-            for (unsigned int i = 0; i < n_dofs; ++i)
+            for (unsigned int a = 0; a < n; ++a)
             {
-              const unsigned int c      = fe.system_to_component_index(i).first;
-              const double       weight = fe_values.shape_value(i, q) * points[q].JxW;
-              cell_mass[i] += weight;
-              for (unsigned int part = 0; part < 2 * n_tensors_; ++part)
-                cell_values[part][i] += weight * tensors[part / 2][tensor_row[part % 2][c]][tensor_column[part % 2][c]];
-              if (plastic && c == 0)
-                cell_values.back()[i] += weight * points[q].equivalent_plastic_strain;
+              const double weight = shape(q, a) * points[q].JxW;
+              for (unsigned int c = 0; c < dim; ++c)
+              {
+                const unsigned int i = fe.component_to_system_index(c, a);
+                cell_mass[i] += weight;
+                for (unsigned int part = 0; part < 2 * n_tensors_; ++part)
+                  cell_values[part][i] +=
+                      weight * tensors[part / 2][tensor_row[part % 2][c]][tensor_column[part % 2][c]];
+              }
+              if (plastic)
+                cell_values.back()[fe.component_to_system_index(0, a)] += weight * points[q].equivalent_plastic_strain;
             }
           }
           cell->get_dof_indices(dofs);

@@ -6,7 +6,6 @@
 
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/dofs/dof_handler.h>
-#include <deal.II/fe/mapping.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <vector>
@@ -30,7 +29,6 @@ namespace Nodus
   public:
     /// @p u has ghost entries. Collective.
     NodalStress(const dealii::DoFHandler<dim> &dof_handler,
-                const dealii::Mapping<dim>    &mapping,
                 const SolidAssembler          &solid,
                 const Vector                  &u,
                 bool                           with_strains = false);

@@ -9,8 +9,9 @@ namespace Nodus
 
   namespace
   {
-    /// Turns of axes up to this leave ones that are less than round-off.
-    constexpr double smallest_turn = 1e-9;
+    /// Turns of axes up to this leave ones that are less than round-off: the sweep after them turns by their square,
+    /// and by their third power where eigenvalues are apart.
+    constexpr double smallest_turn = 1e-8;
 
     inline void sqrt(const Lanes &x, Lanes &result)
     {
@@ -122,6 +123,24 @@ namespace Nodus
                                   Lanes (&S)[n_pairs],
                                   Lanes (*C)[n_pairs][n_pairs]) const
   {
+    respond_lanes(F, before, after, S, C, nullptr);
+  }
+
+  void PrincipalLaw::stress_and_energy_lanes(const Lanes (&F)[dim][dim],
+                                             const Lanes *const state,
+                                             Lanes (&S)[n_pairs],
+                                             Lanes &energy) const
+  {
+    respond_lanes(F, state, nullptr, S, nullptr, &energy);
+  }
+
+  void PrincipalLaw::respond_lanes(const Lanes (&F)[dim][dim],
+                                   const Lanes *const before,
+                                   Lanes *const       after,
+                                   Lanes (&S)[n_pairs],
+                                   Lanes (*const C)[n_pairs][n_pairs],
+                                   Lanes *const energy) const
+  {
     const bool has_history = n_state() > 0;
     Lanes      b[n_pairs], stretch_squared[dim], n[dim][dim], N[dim][dim];
     push_forward(F, has_history ? before : nullptr, b);
@@ -136,11 +155,13 @@ namespace Nodus
         principal.strain[a] = std::log(stretch_squared[a][v]) / 2.;
       if (has_history)
         principal.plastic_strain = before[n_pairs][v];
+      if (energy)
+        (*energy)[v] = energy_of(principal.strain);
       respond(principal);
       for (unsigned int a = 0; a < dim; ++a)
       {
         stress[a][v] = principal.stress[a];
-        if (has_history)
+        if (after)
           elastic_squared[a][v] = std::exp(2. * principal.elastic_strain[a]);
         if (!C)
           continue;
@@ -150,7 +171,7 @@ namespace Nodus
         const double       z = principal.strain[c] - principal.strain[d];
         mixed[a][v]          = (principal.secant[a] * z_coth(z) - principal.stress[c] - principal.stress[d]) / 2.;
       }
-      if (has_history)
+      if (after)
         after[n_pairs][v] = principal.plastic_strain;
     }
 
@@ -161,7 +182,7 @@ namespace Nodus
     for (unsigned int r = 0; r < n_pairs; ++r)
     {
       S[r] = stress[0] * square[0][r] + stress[1] * square[1][r] + stress[2] * square[2][r];
-      if (has_history)
+      if (after)
         after[r] =
             elastic_squared[0] * square[0][r] + elastic_squared[1] * square[1][r] + elastic_squared[2] * square[2][r];
     }
@@ -192,11 +213,11 @@ namespace Nodus
   void PrincipalLaw::evaluate_lanes(const Lanes (&F)[dim][dim], Lanes (&S)[n_pairs], Lanes (*C)[n_pairs][n_pairs]) const
   {
     double initial[history_size] = {};
-    Lanes  before[history_size], after[history_size];
+    Lanes  before[history_size];
     set_initial(initial);
     for (unsigned int s = 0; s < history_size; ++s)
       before[s] = Lanes{} + initial[s];
-    update_lanes(F, before, after, S, C);
+    respond_lanes(F, before, nullptr, S, C, nullptr);
   }
 
   void PrincipalLaw::update(const Tensor<2, dim>    &F,

@@ -32,6 +32,10 @@ namespace Nodus
                         Lanes       *after,
                         Lanes (&S)[n_pairs],
                         Lanes (*C)[n_pairs][n_pairs]) const override;
+    void   stress_and_energy_lanes(const Lanes (&F)[dim][dim],
+                                   const Lanes *state,
+                                   Lanes (&S)[n_pairs],
+                                   Lanes &energy) const override;
     double energy(const dealii::Tensor<2, dim> &F) const override;
     double stored_energy(const dealii::Tensor<2, dim> &F, const double *state) const override;
     void   correct_state(double *state) const override;
@@ -55,6 +59,15 @@ namespace Nodus
     virtual void respond(Principal &principal) const = 0;
 
     virtual double energy_of(const double (&elastic_strain)[dim]) const = 0;
+
+  private:
+    /// The state @p after, the tangent and the stored energy before plastic flow are not computed where they are null.
+    void respond_lanes(const Lanes (&F)[dim][dim],
+                       const Lanes *before,
+                       Lanes       *after,
+                       Lanes (&S)[n_pairs],
+                       Lanes (*C)[n_pairs][n_pairs],
+                       Lanes *energy) const;
   };
 } // namespace Nodus
 

@@ -10,6 +10,36 @@ namespace Nodus
 {
   using namespace dealii;
 
+  namespace
+  {
+    /// Of n_lanes cells at a point.
+    struct Response
+    {
+      Lanes cauchy_stress[n_pairs], energy;
+    };
+
+    /// At F and a state that it led to.
+    void respond(const Material &material, const Lanes (&F)[dim][dim], const Lanes *const state, Response &response)
+    {
+      if (material.small_strain())
+      {
+        material.stress_and_energy_lanes(F, state, response.cauchy_stress, response.energy);
+        return;
+      }
+      Lanes S[n_pairs], FS[dim][dim], J;
+      material.stress_and_energy_lanes(F, state, S, response.energy);
+      determinant(F, J);
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int K = 0; K < dim; ++K)
+          FS[i][K] = F[i][0] * S[pair_index[0][K]] + F[i][1] * S[pair_index[1][K]] + F[i][2] * S[pair_index[2][K]];
+      for (unsigned int r = 0; r < n_pairs; ++r)
+      {
+        const unsigned int i = pair_first[r], j = pair_second[r];
+        response.cauchy_stress[r] = (FS[i][0] * F[j][0] + FS[i][1] * F[j][1] + FS[i][2] * F[j][2]) / J;
+      }
+    }
+  } // namespace
+
   bool SolidAssembler::has_history() const
   {
     return std::any_of(scratch_->materials.begin(),
@@ -119,6 +149,7 @@ namespace Nodus
     std::vector<double> nodal_u(s.dofs.size());
     u.extract_subvector_to(s.dofs.begin(), s.dofs.end(), nodal_u.begin());
     std::vector<ElementKernel::DeformationGradient> F(s.n_q);
+    std::vector<Response>                           responses(s.n_q);
     std::vector<PointResult>                        points(s.n_q);
 
     auto cell = s.dof_handler.begin_active();
@@ -127,27 +158,30 @@ namespace Nodus
       const auto         &batch    = s.batches[n];
       const Material     &material = s.material(batch);
       std::vector<double> state(material.n_state());
+      const Lanes *const  states = s.start->values.data() + batch.state;
       s.gather(batch, nodal_u, s.at_lanes.u);
       const ElementKernel::QuadraturePoint *const geometry = s.points(batch);
       s.kernel(batch).deformation(geometry, material.small_strain(), s.at_lanes.u.data(), F.data());
+      for (unsigned int q = 0; q < s.n_q; ++q)
+        respond(material, F[q].F, states + q * state.size(), responses[q]);
       for (unsigned int v = 0; v < batch.size; ++v)
       {
         if (!s.cells[batch.first + v].owned)
           continue;
         for (unsigned int q = 0; q < s.n_q; ++q)
         {
-          Tensor<2, dim> F_point;
+          PointResult &point = points[q];
           for (unsigned int i = 0; i < dim; ++i)
             for (unsigned int J = 0; J < dim; ++J)
-              F_point[i][J] = F[q].F[i][J][v];
+              point.deformation_gradient[i][J] = F[q].F[i][J][v];
+          for (unsigned int r = 0; r < n_pairs; ++r)
+            point.cauchy_stress.access_raw_entry(r) = responses[q].cauchy_stress[r][v];
           for (unsigned int i = 0; i < state.size(); ++i)
-            state[i] = s.start->values[batch.state + q * state.size() + i][v];
-          points[q] = {F_point,
-                       material.cauchy_stress(F_point, state.data()),
-                       material.equivalent_plastic_strain(state.data()),
-                       material.stored_energy(F_point, state.data()),
-                       material.dissipation(state.data()),
-                       geometry[q].JxW[v]};
+            state[i] = states[q * state.size() + i][v];
+          point.equivalent_plastic_strain = material.equivalent_plastic_strain(state.data());
+          point.stored_energy             = responses[q].energy[v];
+          point.dissipation               = material.dissipation(state.data());
+          point.JxW                       = geometry[q].JxW[v];
         }
         while (s.number_of[cell->active_cell_index()] != batch.first + v)
           ++cell;

@@ -105,10 +105,11 @@ namespace Nodus
     const Eigen::RowVectorXd gap = gap_variation(site, state, variation);
     for (const auto &[k, coefficient] : gap_rows_[site])
       couplings.add_gap(k, variation.columns(), coefficient * gap);
-    if (const double compliance = closure_at(status_.pressure_gap_law(site), state.lambda[site]).compliance;
-        compliance > 0. && weight_[site] > 0. && status_.contact(site)) // the pressure of a force that is kept
-      couplings.add_gap(
-          site, variation.columns(), compliance * state.lambda[site] * variation.rows().row(variation.area()));
+    if (weight_[site] > 0. && status_.contact(site))
+      if (const double compliance = closure_at(status_.pressure_gap_law(site), state.lambda[site]).compliance;
+          compliance > 0.) // the pressure of a force that is kept
+        couplings.add_gap(
+            site, variation.columns(), compliance * state.lambda[site] * variation.rows().row(variation.area()));
     if (jump_.middle(site) != jump_.end(site))
     {
       const unsigned int p = surfaces_.pair(site);

@@ -151,7 +151,7 @@ namespace Nodus
     {
       const bool with_strains =
           is_chosen(parameters.fields, "green_lagrange_strain") || is_chosen(parameters.fields, "logarithmic_strain");
-      const NodalStress values(dof_handler, mapping, solid, u, with_strains);
+      const NodalStress values(dof_handler, solid, u, with_strains);
       add_cells(u, grid, true, [&](const auto &, unsigned int, const auto &node) { add(values.at(node[0])); });
     }
   }

@@ -62,7 +62,8 @@ namespace Nodus
         std::vector<char> compressed;
         {
           boost::iostreams::filtering_ostream stream;
-          stream.push(boost::iostreams::zlib_compressor());
+          // as small as with the other levels for these numbers, in a third of the time
+          stream.push(boost::iostreams::zlib_compressor(boost::iostreams::zlib::best_speed));
           stream.push(boost::iostreams::back_inserter(compressed));
           stream.write(reinterpret_cast<const char *>(values.data()), size);
         }

@@ -44,7 +44,7 @@ namespace Nodus
     }
     else
     {
-      const NodalStress stress(model_.dof_handler, *model_.mapping, *model_.solid, u);
+      const NodalStress stress(model_.dof_handler, *model_.solid, u);
       add_stress_error(
           adaptivity.bulk_weight, model_.dof_handler, *model_.solid, model_.materials, u, stress, indicator);
       if (touches)

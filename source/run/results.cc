@@ -43,7 +43,7 @@ namespace Nodus
     if (!points_)
       return;
     const Vector                          u = model_.with_ghosts(states_.committed.unknowns.block(0));
-    const NodalStress                     stress(model_.dof_handler, *model_.mapping, *model_.solid, u);
+    const NodalStress                     stress(model_.dof_handler, *model_.solid, u);
     const std::vector<BodyPoints::Values> values = points_->values(u, stress);
     auto                                  value  = values.begin();
     std::vector<Tables::PointRow>         points, lines;
