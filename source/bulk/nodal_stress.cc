@@ -50,6 +50,10 @@ namespace Nodus
     for (unsigned int q = 0; q < quadrature.size(); ++q)
       for (unsigned int a = 0; a < n; ++a)
         shape(q, a) = scalar.shape_value(a, quadrature.point(q));
+    std::vector<std::array<unsigned int, dim>> number(n); // of a node's components in the cell
+    for (unsigned int a = 0; a < n; ++a)
+      for (unsigned int c = 0; c < dim; ++c)
+        number[a][c] = fe.component_to_system_index(c, a);
     const bool plastic = solid.has_history();
 
     const AffineConstraints<double> hanging_nodes = hanging_constraints(dof_handler);
@@ -77,14 +81,14 @@ namespace Nodus
               const double weight = shape(q, a) * points[q].JxW;
               for (unsigned int c = 0; c < dim; ++c)
               {
-                const unsigned int i = fe.component_to_system_index(c, a);
+                const unsigned int i = number[a][c];
                 cell_mass[i] += weight;
                 for (unsigned int part = 0; part < 2 * n_tensors_; ++part)
                   cell_values[part][i] +=
                       weight * tensors[part / 2][tensor_row[part % 2][c]][tensor_column[part % 2][c]];
               }
               if (plastic)
-                cell_values.back()[fe.component_to_system_index(0, a)] += weight * points[q].equivalent_plastic_strain;
+                cell_values.back()[number[a][0]] += weight * points[q].equivalent_plastic_strain;
             }
           }
           cell->get_dof_indices(dofs);

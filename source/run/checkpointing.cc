@@ -119,6 +119,7 @@ namespace Nodus
       , states_(states)
       , equilibrium_(equilibrium)
       , results_(results)
+      , keys_(checkpointed_model(model.parameters))
       , checkpoints_(model.parameters.output.results_folder, model.communicator)
   {
   }
@@ -139,8 +140,7 @@ namespace Nodus
   {
     const auto             timer    = journal_.profile.time(Phase::output);
     const ContactSurfaces &surfaces = model_.contact->surfaces();
-    Common                 common{
-        checkpointed_model(model_.parameters), path, pack_common(states_.committed), journal_.tables->rows(), {}};
+    Common                 common{keys_, path, pack_common(states_.committed), journal_.tables->rows(), {}};
     if (const VtuOutput *const vtu = results_.vtu())
       common.series = vtu->series();
 
@@ -192,7 +192,7 @@ namespace Nodus
     if (!found->remark.empty())
       journal_.console.line("Passed over: " + found->remark);
     const Common      common = dealii::Utilities::unpack<Common>(found->common);
-    const std::string other = first_difference(common.model, checkpointed_model(model_.parameters), common.path.time());
+    const std::string other  = first_difference(common.model, keys_, common.path.time());
     throw_everywhere<InputError>(other.empty()
                                      ? ""
                                      : "the checkpoint in " + model_.parameters.output.results_folder +

@@ -6,6 +6,8 @@
 #include "run/results.h"
 
 #include <filesystem>
+#include <map>
+#include <string>
 #include <vector>
 
 namespace Nodus
@@ -41,7 +43,9 @@ namespace Nodus
     States      &states_;
     Equilibrium &equilibrium_;
     Results     &results_;
-    Checkpoints  checkpoints_;
+
+    const std::map<std::string, std::string> keys_; ///< of the model that checkpoints belong to
+    Checkpoints                              checkpoints_;
   };
 } // namespace Nodus
 
