@@ -1,5 +1,6 @@
 #include "run/equilibrium.h"
 #include "base/text.h"
+#include "bulk/cell_corners.h"
 #include "mesh/sides.h"
 #include "parallel/largest.h"
 #include "parallel/owned_values.h"
@@ -56,16 +57,17 @@ namespace Nodus
                       &forces_.out_of_balance})
       v->reinit(layout.owned[0], model_.communicator);
     model_.solid->make_sparsity(system_.bulk);
-    solver_ = std::make_unique<ChosenSolver>(model_.parameters,
-                                             model_.parameters.strategy.uses(Remedy::direct_solver),
-                                             layout,
-                                             OwnedNodes(model_.dof_handler, *model_.mapping).X,
-                                             journal_.profile,
-                                             [this](const std::string &text)
-                                             {
-                                               journal_.count(Remedy::direct_solver);
-                                               journal_.console.remark(text);
-                                             });
+    solver_ = std::make_unique<ChosenSolver>(
+        model_.parameters,
+        model_.parameters.strategy.uses(Remedy::direct_solver),
+        layout,
+        DisplacementNodes(OwnedNodes(model_.dof_handler, *model_.mapping).X, cell_corners(model_.dof_handler)),
+        journal_.profile,
+        [this](const std::string &text)
+        {
+          journal_.count(Remedy::direct_solver);
+          journal_.console.remark(text);
+        });
   }
 
   void Equilibrium::begin_increment(const Increment &increment)

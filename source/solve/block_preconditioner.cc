@@ -16,7 +16,7 @@ namespace Nodus
 
   BlockPreconditioner::BlockPreconditioner(const SaddlePointOperator  &system,
                                            const double                augmentation_factor,
-                                           const std::vector<Point>   &node_positions,
+                                           const DisplacementNodes    &nodes,
                                            DisplacementPreconditioner &multigrid)
       : system_(system)
       , multigrid_(multigrid)
@@ -24,7 +24,7 @@ namespace Nodus
   {
     augmented_rhs_.reinit(system.displacement_ownership().owned(), system.bulk().map().communicator());
     make_multiplier_blocks(augmentation_factor);
-    multigrid_.set_up(system.bulk(), augmentation(), rigid_body_modes(system.bulk(), node_positions));
+    multigrid_.set_up(system.bulk(), augmentation(), rigid_body_modes(system.bulk(), nodes.positions), nodes);
   }
 
   void BlockPreconditioner::make_multiplier_blocks(const double augmentation_factor)

@@ -25,7 +25,7 @@ namespace Nodus
     /// Keeps references to @p system and @p multigrid, which it sets up. Collective.
     BlockPreconditioner(const SaddlePointOperator  &system,
                         double                      augmentation_factor,
-                        const std::vector<Point>   &node_positions,
+                        const DisplacementNodes    &nodes,
                         DisplacementPreconditioner &multigrid);
     BlockPreconditioner(const BlockPreconditioner &)            = delete;
     BlockPreconditioner &operator=(const BlockPreconditioner &) = delete;

@@ -9,9 +9,9 @@
 
 namespace Nodus
 {
-  BlockSolver::BlockSolver(const LinearSolverParameters &parameters, const std::vector<Point> &node_positions)
+  BlockSolver::BlockSolver(const LinearSolverParameters &parameters, DisplacementNodes nodes)
       : parameters_(parameters)
-      , node_positions_(node_positions)
+      , nodes_(std::move(nodes))
       // three sweeps pay off against the stiff couplings of the augmentation
       , multigrid_(make_displacement_preconditioner(parameters.preconditioner, 3))
   {
@@ -30,8 +30,8 @@ namespace Nodus
       if (!preconditioner)
       {
         const auto timer = time_set_up();
-        preconditioner   = std::make_unique<const BlockPreconditioner>(
-            matrix, parameters_.augmentation_factor, node_positions_, *multigrid_);
+        preconditioner =
+            std::make_unique<const BlockPreconditioner>(matrix, parameters_.augmentation_factor, nodes_, *multigrid_);
       }
       const KrylovReport krylov = left_gmres(
           matrix,

@@ -12,7 +12,7 @@ namespace Nodus
   class BlockSolver : public LinearSolver
   {
   public:
-    BlockSolver(const LinearSolverParameters &parameters, const std::vector<Point> &node_positions);
+    BlockSolver(const LinearSolverParameters &parameters, DisplacementNodes nodes);
 
     using LinearSolver::solve;
     Report solve(const LinearSystem                     &system,
@@ -22,7 +22,7 @@ namespace Nodus
 
   private:
     const LinearSolverParameters                      parameters_;
-    const std::vector<Point>                          node_positions_;
+    const DisplacementNodes                           nodes_;
     const std::unique_ptr<DisplacementPreconditioner> multigrid_;
   };
 } // namespace Nodus

@@ -22,14 +22,14 @@ namespace Nodus
   ChosenSolver::ChosenSolver(const Parameters                               &parameters,
                              const bool                                      rescue,
                              const BlockLayout                              &layout,
-                             const std::vector<Point>                       &node_positions,
+                             DisplacementNodes                               nodes,
                              Profile                                        &profile,
                              const std::function<void(const std::string &)> &remark)
       : choice_(solver_choice(parameters, layout.n_u))
       , parameters_(parameters.linear_solver)
       , rescue_(rescue)
       , layout_(layout)
-      , node_positions_(node_positions)
+      , nodes_(std::move(nodes))
       , remark_(remark)
   {
     profile_         = &profile;
@@ -52,7 +52,7 @@ namespace Nodus
   {
     if (!iterative_)
     {
-      iterative_ = make_linear_solver(parameters_, layout_, node_positions_);
+      iterative_ = make_linear_solver(parameters_, layout_, std::move(nodes_));
       iterative_->set_profile(profile_);
     }
     return *iterative_;

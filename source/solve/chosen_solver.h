@@ -28,7 +28,7 @@ namespace Nodus
     ChosenSolver(const Parameters                               &parameters,
                  bool                                            rescue,
                  const BlockLayout                              &layout,
-                 const std::vector<Point>                       &node_positions,
+                 DisplacementNodes                               nodes,
                  Profile                                        &profile,
                  const std::function<void(const std::string &)> &remark);
 
@@ -62,7 +62,7 @@ namespace Nodus
     LinearSolverParameters                   parameters_; ///< of the iterative solver
     bool                                     rescue_;
     const BlockLayout                       &layout_;
-    const std::vector<Point>                 node_positions_;
+    DisplacementNodes                        nodes_; ///< until the iterative solver takes them
     std::function<void(const std::string &)> remark_;
     std::unique_ptr<LinearSolver>            direct_, iterative_; ///< once they were needed
     bool                                     failed_   = false;   ///< the iterative one has, in this increment

@@ -55,9 +55,9 @@ namespace Nodus
     }
   } // namespace
 
-  CondensedSolver::CondensedSolver(const LinearSolverParameters &parameters, const std::vector<Point> &node_positions)
+  CondensedSolver::CondensedSolver(const LinearSolverParameters &parameters, DisplacementNodes nodes)
       : parameters_(parameters)
-      , node_positions_(node_positions)
+      , nodes_(std::move(nodes))
       , multigrid_(make_displacement_preconditioner(parameters.preconditioner, 2))
   {
   }
@@ -67,9 +67,9 @@ namespace Nodus
     const auto timer = time_set_up();
     set_up_          = false;
     multigrid_->release(); // before the modes take memory
-    std::vector<double> modes = rigid_body_modes(system.bulk, node_positions_);
+    std::vector<double> modes = rigid_body_modes(system.bulk, nodes_.positions);
     condensation.transform_modes(modes);
-    multigrid_->set_up(system.bulk, condensation.constraints(), std::move(modes));
+    multigrid_->set_up(system.bulk, condensation.constraints(), std::move(modes), nodes_);
     set_up_           = true;
     signature_        = condensation.signature();
     first_iterations_ = last_iterations_ = 0.;
@@ -166,7 +166,7 @@ namespace Nodus
     catch (const NotCondensable &)
     {
       if (!block_solver_)
-        block_solver_ = std::make_unique<BlockSolver>(parameters_, node_positions_);
+        block_solver_ = std::make_unique<BlockSolver>(parameters_, nodes_);
       block_solver_->set_profile(profile_);
       return block_solver_->solve(system, rhs, solutions, relative_tolerance);
     }

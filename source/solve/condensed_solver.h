@@ -18,7 +18,7 @@ namespace Nodus
   class CondensedSolver : public LinearSolver
   {
   public:
-    CondensedSolver(const LinearSolverParameters &parameters, const std::vector<Point> &node_positions);
+    CondensedSolver(const LinearSolverParameters &parameters, DisplacementNodes nodes);
 
     using LinearSolver::solve;
     Report solve(const LinearSystem                     &system,
@@ -48,7 +48,7 @@ namespace Nodus
                        BlockVector               &x) const;
 
     const LinearSolverParameters                      parameters_;
-    const std::vector<Point>                          node_positions_;
+    const DisplacementNodes                           nodes_;
     const std::unique_ptr<DisplacementPreconditioner> multigrid_;
     bool                                              set_up_ = false; ///< multigrid_ is
     std::vector<char>                                 signature_; ///< of the system that the hierarchy was made for

@@ -21,11 +21,14 @@ namespace Nodus
           : smoother_sweeps_(smoother_sweeps)
       {
       }
-      void set_up(const BlockCsrMatrix &K, Constraints constraints, std::vector<double> modes) override
+      void set_up(const BlockCsrMatrix    &K,
+                  Constraints              constraints,
+                  std::vector<double>      modes,
+                  const DisplacementNodes &nodes) override
       {
         release(); // before the next one takes as much memory
         matrix_    = std::make_unique<ConstrainedMatrix>(K, std::move(constraints));
-        multigrid_ = std::make_unique<Multigrid>(K, *matrix_, std::move(modes), smoother_sweeps_);
+        multigrid_ = std::make_unique<Multigrid>(K, *matrix_, std::move(modes), nodes, smoother_sweeps_);
       }
       void vmult(Vector &dst, const Vector &src) const override
       {
@@ -51,7 +54,10 @@ namespace Nodus
           , multigrid_(open_multigrid(choice))
       {
       }
-      void set_up(const BlockCsrMatrix &K, Constraints constraints, std::vector<double> modes) override
+      void set_up(const BlockCsrMatrix &K,
+                  Constraints           constraints,
+                  std::vector<double>   modes,
+                  const DisplacementNodes & /*nodes*/) override
       {
         AssembledMatrix A    = assemble(K, constraints);
         const MPI_Comm  comm = A.communicator;

@@ -2,6 +2,7 @@
 #define nodus_solve_displacement_preconditioner_h
 
 #include "solve/constrained_matrix.h"
+#include "solve/displacement_nodes.h"
 #include "solve/linear_solver.h"
 
 #include <memory>
@@ -17,8 +18,11 @@ namespace Nodus
     virtual ~DisplacementPreconditioner() = default;
 
     /// Sets up for T^T K T + R^T D R + d, in place of what there was before. @p modes as of rigid_body_modes(), in the
-    /// unknowns of that matrix. Keeps no reference to @p K. Collective. @throws SolverFailure
-    virtual void set_up(const BlockCsrMatrix &K, Constraints constraints, std::vector<double> modes) = 0;
+    /// unknowns of that matrix. Keeps no reference to @p K and @p nodes. Collective. @throws SolverFailure
+    virtual void set_up(const BlockCsrMatrix    &K,
+                        Constraints              constraints,
+                        std::vector<double>      modes,
+                        const DisplacementNodes &nodes) = 0;
 
     /// Symmetric. Collective. @throws SolverFailure
     virtual void vmult(Vector &dst, const Vector &src) const = 0;

@@ -55,15 +55,14 @@ namespace Nodus
     return open() ? "direct or " + name + ", whichever costs less" : name;
   }
 
-  std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverParameters &parameters,
-                                                   const BlockLayout            &layout,
-                                                   const std::vector<Point>     &node_positions)
+  std::unique_ptr<LinearSolver>
+  make_linear_solver(const LinearSolverParameters &parameters, const BlockLayout &layout, DisplacementNodes nodes)
   {
     AssertThrow(parameters.type != LinearSolverParameters::Type::automatic, dealii::ExcInternalError());
     if (parameters.type == LinearSolverParameters::Type::direct)
       return std::make_unique<DirectSolver>(layout);
     if (parameters.type == LinearSolverParameters::Type::condensed)
-      return std::make_unique<CondensedSolver>(parameters, node_positions);
-    return std::make_unique<BlockSolver>(parameters, node_positions);
+      return std::make_unique<CondensedSolver>(parameters, std::move(nodes));
+    return std::make_unique<BlockSolver>(parameters, std::move(nodes));
   }
 } // namespace Nodus

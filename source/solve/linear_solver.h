@@ -2,6 +2,7 @@
 #define nodus_solve_linear_solver_h
 
 #include "base/profile.h"
+#include "solve/displacement_nodes.h"
 #include "solve/linear_system.h"
 #include <nodus/parameters/parameters.h>
 
@@ -90,11 +91,9 @@ namespace Nodus
   LinearSolverChoice solver_choice(const Parameters &parameters, DoFIndex n_displacements);
 
   /// @param parameters whose type is not automatic
-  /// @param node_positions of the owned displacement nodes, in the order of their degrees of freedom, for the
-  /// rigid-body modes
-  std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverParameters &parameters,
-                                                   const BlockLayout            &layout,
-                                                   const std::vector<Point>     &node_positions);
+  /// @param nodes in the order of their degrees of freedom, for multigrid
+  std::unique_ptr<LinearSolver>
+  make_linear_solver(const LinearSolverParameters &parameters, const BlockLayout &layout, DisplacementNodes nodes);
 } // namespace Nodus
 
 #endif

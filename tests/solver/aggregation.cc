@@ -123,7 +123,7 @@ namespace
           D_inverse[i][4 * c] = 1. / scale;
       constexpr double   omega = 0.6;
       Aggregation        coarse(K, A, modes, D_inverse, omega);
-      const auto         matrix   = coarse.make_coarse_matrix(K);
+      const auto         matrix   = coarse.make_coarse_matrix(K, A);
       const unsigned int n_coarse = dim * matrix->map().n_owned();
 
       double worst = 0.;
@@ -157,7 +157,7 @@ namespace
       norm       = dealii::Utilities::MPI::sum(norm, MPI_COMM_WORLD);
       report("coarse matrix is P^T A P", std::sqrt(difference / norm), 1e-12);
 
-      const Multigrid multigrid(K, A, modes, 2);
+      const Multigrid multigrid(K, A, modes, problem.node_positions, 2);
       Vector          u, v, Mu, Mv;
       for (Vector *w : {&u, &v, &Mu, &Mv})
         w->reinit(problem.layout.owned[0], MPI_COMM_WORLD);

@@ -175,15 +175,17 @@ namespace Nodus
     }
   } // namespace
 
-  void
-  Aggregation::smooth(const BlockCsrMatrix &K, const std::vector<std::array<double, 9>> &D_inverse, const double omega)
+  void Aggregation::smooth(const BlockCsrMatrix                     &K,
+                           const ConstrainedMatrix                  &A,
+                           const std::vector<std::array<double, 9>> &D_inverse,
+                           const double                              omega)
   {
-    const unsigned int               n_owned    = nodes_.n_owned();
+    const unsigned int               n_owned    = n_nodes_;
     Aggregates                      &aggregates = P_.aggregates;
-    Tentative                        P_0        = at_local_nodes(A_, tentative_, aggregate_, aggregates.first);
+    Tentative                        P_0        = at_local_nodes(A, tentative_, aggregate_, aggregates.first);
     std::map<unsigned int, PanelRow> constrained;
-    if (A_.constrained())
-      constrained = constrained_rows(A_, K, P_0);
+    if (A.constrained())
+      constrained = constrained_rows(A, K, P_0);
     tentative_ = std::vector<double>();
 
     for (const DoFIndex a : P_0.aggregates)
@@ -202,7 +204,7 @@ namespace Nodus
     for (auto &[z, T_row] : P_0.replaced)
       for (auto &[column, panel] : T_row)
         column = local_column[column];
-    find_unreplaced(A_, P_0);
+    find_unreplaced(A, P_0);
 
     SparseRow row;
     row.reinit(aggregates.size());
@@ -213,10 +215,10 @@ namespace Nodus
     P_.blocks.reserve(5 * block_size * n_owned + 2);
     for (unsigned int i = 0; i < n_owned; ++i)
     {
-      if (!A_.replacement(i))
+      if (!A.replacement(i))
         K.for_row(i,
                   [&](const unsigned int j, const double *block, const bool transposed)
-                  { add_row(A_, P_0, j, block, transposed, row); });
+                  { add_row(A, P_0, j, block, transposed, row); });
       if (const auto more = constrained.find(i); more != constrained.end())
         for (const auto &[a, panel] : more->second)
           for (unsigned int c = 0; c < dim; ++c)

@@ -1,12 +1,9 @@
 #include "solve/multigrid/multigrid.h"
 #include "parallel/wait_for_all.h"
 #include "solve/multigrid/coarse_solver.h"
+#include "solve/multigrid/rigid_motions.h"
 
 #include <deal.II/base/mpi.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace Nodus
 {
@@ -19,6 +16,16 @@ namespace Nodus
     {
       return dim * matrix.map().n_global();
     }
+
+    /// Modes vanish where nothing but the diagonal of @p K couples.
+    void clear_decoupled(const BlockCsrMatrix &K, std::vector<double> &modes)
+    {
+      const std::size_t n = dim * K.map().n_owned();
+      for (std::size_t i = 0; i < n; ++i)
+        if (K.decoupled(i))
+          for (unsigned int m = 0; m < Transfer::n_modes; ++m)
+            modes[m * n + i] = 0.;
+    }
   } // namespace
 
   std::vector<double> rigid_body_modes(const BlockCsrMatrix &K, const std::vector<Point> &node_positions)
@@ -29,51 +36,32 @@ namespace Nodus
     if (dealii::Utilities::MPI::max(dim * node_positions.size() == n ? 0 : 1, comm) != 0)
       throw SolverFailure("Multigrid: the positions of the nodes do not match the displacements of the system.");
 
-    std::vector<double> least(2 * dim, std::numeric_limits<double>::max()); // of the coordinates and their negatives
-    for (const Point &p : node_positions)
-      for (unsigned int d = 0; d < dim; ++d)
-      {
-        least[d]       = std::min(least[d], p[d]);
-        least[dim + d] = std::min(least[dim + d], -p[d]);
-      }
-    dealii::Utilities::MPI::min(least, comm, least);
-    Vector3 centre, extent;
-    for (unsigned int d = 0; d < dim; ++d)
-    {
-      centre[d] = .5 * (least[d] - least[dim + d]);
-      extent[d] = -least[dim + d] - least[d];
-    }
-    const double length = extent.norm();
-
+    const RigidMotions  motions(node_positions, comm);
     std::vector<double> modes(6 * std::max<std::size_t>(n, 1), 0.);
-    for (std::size_t i = 0; i < n; ++i)
-      if (!K.decoupled(i))
-      {
-        const Vector3      x = (node_positions[i / dim] - Point(centre)) / length;
-        const unsigned int c = i % dim;
-        modes[c * n + i]     = 1.;
-        // rotation about axis a: e_a x x
-        modes[(3 + (c + 1) % 3) * n + i] = x[(c + 2) % 3];
-        modes[(3 + (c + 2) % 3) * n + i] = -x[(c + 1) % 3];
-      }
+    for (std::size_t i = 0; i < n / dim; ++i)
+      motions.set(node_positions[i], modes.data() + dim * i, n);
+    clear_decoupled(K, modes);
     return modes;
   }
 
   Multigrid::Multigrid(const BlockCsrMatrix    &K,
                        const ConstrainedMatrix &A,
                        std::vector<double>      modes,
+                       const DisplacementNodes &nodes,
                        unsigned int             smoother_sweeps)
   {
-    std::unique_ptr<BlockCsrMatrix> matrix = add_level(K, nullptr, &A, modes, smoother_sweeps);
+    const bool                      corners = !nodes.corners.pairs.empty();
+    std::unique_ptr<BlockCsrMatrix> matrix =
+        add_level(K, nullptr, &A, modes, corners ? &nodes : nullptr, smoother_sweeps);
     smoother_sweeps *= 2; // the coarse levels cost little
     bool stalls = false;
     while (!stalls && size(*matrix) > largest_coarsest)
     {
       auto                           copy     = std::make_unique<ConstrainedMatrix>(*matrix);
       const ConstrainedMatrix *const A_coarse = copy.get();
-      auto                           next     = add_level(*matrix, std::move(copy), A_coarse, modes, smoother_sweeps);
-      stalls                                  = size(*next) > .5 * size(*matrix);
-      matrix                                  = std::move(next);
+      auto next = add_level(*matrix, std::move(copy), A_coarse, modes, nullptr, smoother_sweeps);
+      stalls    = size(*next) > .5 * size(*matrix);
+      matrix    = std::move(next);
     }
 
     coarsest_ = std::make_unique<CoarseSolver>(*matrix);
@@ -84,13 +72,15 @@ namespace Nodus
                                                        std::unique_ptr<ConstrainedMatrix> owned,
                                                        const ConstrainedMatrix           *A,
                                                        std::vector<double>               &modes,
+                                                       const DisplacementNodes           *corners,
                                                        const unsigned int                 smoother_sweeps)
   {
     Level level;
-    level.matrix                         = std::move(owned);
-    level.level                          = std::make_unique<MultigridLevel>(K, *A, std::move(modes), smoother_sweeps);
-    std::unique_ptr<BlockCsrMatrix> next = level.level->transfer().make_coarse_matrix(K);
+    level.matrix = std::move(owned);
+    level.level  = std::make_unique<MultigridLevel>(K, *A, std::move(modes), corners, smoother_sweeps);
+    std::unique_ptr<BlockCsrMatrix> next = level.level->transfer().make_coarse_matrix(K, *A);
     modes                                = std::move(level.level->transfer().modes());
+    clear_decoupled(*next, modes);
     for (auto *v : {&level.coarse_residual, &level.coarse_correction})
       v->resize(dim * next->map().n_owned());
     levels_.push_back(std::move(level));

@@ -1,6 +1,7 @@
 #ifndef nodus_solve_multigrid_multigrid_h
 #define nodus_solve_multigrid_multigrid_h
 
+#include "solve/displacement_nodes.h"
 #include "solve/linear_solver.h"
 #include "solve/multigrid/coarse_solver.h"
 #include "solve/multigrid/multigrid_level.h"
@@ -14,8 +15,8 @@ namespace Nodus
   /// the other; zero where nothing but the diagonal of @p K couples. Collective.
   std::vector<double> rigid_body_modes(const BlockCsrMatrix &K, const std::vector<Point> &node_positions);
 
-  /// Smoothed aggregation multigrid, one V cycle: levels in node blocks down to 400 unknowns, which are solved exactly
-  /// (section 27).
+  /// One V cycle: from displacements of degree 2 to those of degree 1, smoothed aggregation below, levels in node
+  /// blocks down to 400 unknowns, which are solved exactly (section 27).
   class Multigrid
   {
   public:
@@ -24,6 +25,7 @@ namespace Nodus
     Multigrid(const BlockCsrMatrix    &K,
               const ConstrainedMatrix &A,
               std::vector<double>      modes,
+              const DisplacementNodes &nodes,
               unsigned int             smoother_sweeps);
 
     /// Symmetric. Collective.
@@ -41,6 +43,7 @@ namespace Nodus
                                               std::unique_ptr<ConstrainedMatrix> owned,
                                               const ConstrainedMatrix           *A,
                                               std::vector<double>               &modes,
+                                              const DisplacementNodes           *corners,
                                               unsigned int                       smoother_sweeps);
 
     std::vector<Level>            levels_;

@@ -1,4 +1,6 @@
 #include "solve/multigrid/multigrid_level.h"
+#include "solve/multigrid/aggregation.h"
+#include "solve/multigrid/corner_transfer.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -13,6 +15,7 @@ namespace Nodus
   MultigridLevel::MultigridLevel(const BlockCsrMatrix    &K,
                                  const ConstrainedMatrix &A,
                                  std::vector<double>      modes,
+                                 const DisplacementNodes *corners,
                                  const unsigned int       smoother_sweeps)
       : A_(A)
       , sweeps_(smoother_sweeps)
@@ -21,7 +24,10 @@ namespace Nodus
       v->resize(dim * A.map().n_owned());
     make_diagonal(K);
     largest_eigenvalue_ = largest_eigenvalue();
-    transfer_ = std::make_unique<Aggregation>(K, A, std::move(modes), D_inverse_, 4. / 3. / largest_eigenvalue_);
+    if (corners)
+      transfer_ = std::make_unique<CornerTransfer>(A, modes, *corners);
+    else
+      transfer_ = std::make_unique<Aggregation>(K, A, std::move(modes), D_inverse_, 4. / 3. / largest_eigenvalue_);
   }
 
   void MultigridLevel::make_diagonal(const BlockCsrMatrix &K)

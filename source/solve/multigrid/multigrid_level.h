@@ -1,7 +1,8 @@
 #ifndef nodus_solve_multigrid_multigrid_level_h
 #define nodus_solve_multigrid_multigrid_level_h
 
-#include "solve/multigrid/aggregation.h"
+#include "solve/displacement_nodes.h"
+#include "solve/multigrid/transfer.h"
 
 #include <array>
 #include <memory>
@@ -14,13 +15,15 @@ namespace Nodus
   {
   public:
     /// Keeps a reference to @p A, not to @p K of which it was made. @p modes of the owned unknowns, six one after the
-    /// other. Collective.
+    /// other. @p corners of degree 2, from which the next level has degree 1; null: it has aggregates.
+    /// Collective.
     MultigridLevel(const BlockCsrMatrix    &K,
                    const ConstrainedMatrix &A,
                    std::vector<double>      modes,
+                   const DisplacementNodes *corners,
                    unsigned int             smoother_sweeps);
 
-    Aggregation &transfer()
+    Transfer &transfer()
     {
       return *transfer_;
     }
@@ -41,7 +44,7 @@ namespace Nodus
     const unsigned int                 sweeps_;
     std::vector<std::array<double, 9>> D_inverse_;
     double                             largest_eigenvalue_; ///< of D^-1 A
-    std::unique_ptr<Aggregation>       transfer_;
+    std::unique_ptr<Transfer>          transfer_;
     mutable std::vector<double>        residual_, update_, product_;
   };
 } // namespace Nodus
