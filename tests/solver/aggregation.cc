@@ -1,7 +1,9 @@
 // The parts of multigrid against products with T^T K T + R^T D R + d from global vectors: prolongation of the modes,
-// P^T A P, and the symmetry of the cycle. Prolongation and smoother are in single precision. Also that matrix entry by
-// entry, as other libraries get it.
+// P^T A P, and the symmetry of the cycle; of degree 2 with degree 1 below it as well. Prolongation and smoother are in
+// single precision. Also that matrix entry by entry, as other libraries get it.
 
+#include "solve/multigrid/aggregation.h"
+#include "solve/multigrid/corner_transfer.h"
 #include "solve/multigrid/multigrid.h"
 #include "solve/trilinos/assemble.h"
 
@@ -121,22 +123,35 @@ namespace
       for (unsigned int i = 0; i < K.map().n_owned(); ++i)
         for (unsigned int c = 0; c < dim; ++c)
           D_inverse[i][4 * c] = 1. / scale;
-      constexpr double   omega = 0.6;
-      Aggregation        coarse(K, A, modes, D_inverse, omega);
+      constexpr double omega = 0.6;
+      Aggregation      aggregates(K, A, modes, D_inverse, omega);
+      check_transfer("aggregates", aggregates, omega / scale);
+      check_cycle(problem.node_positions);
+      if (problem.corners.pairs.empty())
+        return;
+      CornerTransfer corners(A, modes, problem.nodes());
+      check_transfer("corners", corners, 0.);
+      check_cycle(problem.nodes());
+    }
+
+  private:
+    /// @param damping of P = (1 - damping A) P_0
+    void check_transfer(const std::string &name, Transfer &coarse, const double damping)
+    {
       const auto         matrix   = coarse.make_coarse_matrix(K, A);
       const unsigned int n_coarse = dim * matrix->map().n_owned();
 
       double worst = 0.;
-      for (unsigned int m = 0; m < Aggregation::n_modes; ++m)
+      for (unsigned int m = 0; m < Transfer::n_modes; ++m)
       {
         std::vector<double> prolonged(n, 0.), wanted(modes.begin() + m * n, modes.begin() + (m + 1) * n);
         coarse.add_prolongation(prolonged.data(), coarse.modes().data() + m * n_coarse);
         const std::vector<double> product = apply(wanted);
         for (unsigned int i = 0; i < n; ++i)
-          wanted[i] -= omega / scale * product[i];
+          wanted[i] -= damping * product[i];
         worst = std::max(worst, distance(prolonged, wanted));
       }
-      report("prolonged modes are the smoothed ones", worst, 1e-6);
+      report(name + ": prolonged modes are the smoothed ones", worst, 1e-6);
 
       std::vector<double> z(n_coarse), A_z(n_coarse), product(n_coarse);
       for (unsigned int i = 0; i < n_coarse; ++i)
@@ -155,9 +170,12 @@ namespace
         }
       difference = dealii::Utilities::MPI::sum(difference, MPI_COMM_WORLD);
       norm       = dealii::Utilities::MPI::sum(norm, MPI_COMM_WORLD);
-      report("coarse matrix is P^T A P", std::sqrt(difference / norm), 1e-12);
+      report(name + ": coarse matrix is P^T A P", std::sqrt(difference / norm), 1e-12);
+    }
 
-      const Multigrid multigrid(K, A, modes, problem.node_positions, 2);
+    void check_cycle(const DisplacementNodes &nodes)
+    {
+      const Multigrid multigrid(K, A, modes, nodes, 2);
       Vector          u, v, Mu, Mv;
       for (Vector *w : {&u, &v, &Mu, &Mv})
         w->reinit(problem.layout.owned[0], MPI_COMM_WORLD);
@@ -169,7 +187,6 @@ namespace
       out << "cycle is positive: " << yes(u * Mu > 0. && v * Mv > 0.) << std::endl;
     }
 
-  private:
     void check_assembled(const std::vector<double> &x, const std::vector<double> &Ax)
     {
       const AssembledMatrix     assembled = assemble(K, constraints.on_rank(K, displacements));

@@ -69,8 +69,7 @@ int main(int argc, char **argv)
   out << "displacements: " << problem.layout.n_u << std::endl;
 
   BlockVector reference;
-  make_linear_solver(LinearSolverParameters(), problem.layout, problem.node_positions)
-      ->solve(problem.system, reference);
+  make_linear_solver(LinearSolverParameters(), problem.layout, problem.nodes())->solve(problem.system, reference);
   const auto difference = [&](BlockVector x)
   {
     x -= reference;

@@ -28,7 +28,7 @@ int main(int argc, char **argv)
   base.tilt            = .5;
   base.threshold_range = 1e6;
   TwoCubes   problem(base);
-  const auto solver = make_linear_solver(LinearSolverParameters(), problem.layout, problem.node_positions);
+  const auto solver = make_linear_solver(LinearSolverParameters(), problem.layout, problem.nodes());
 
   const auto report = [&](const std::string          &title,
                           const Options              &options,

@@ -34,8 +34,7 @@ namespace ModelProblem
     {
       TwoCubes    problem(options);
       BlockVector x, reference;
-      const auto  result =
-          make_linear_solver(parameters, problem.layout, problem.node_positions)->solve(problem.system, x);
+      const auto  result = make_linear_solver(parameters, problem.layout, problem.nodes())->solve(problem.system, x);
       out << title << ": iterations between " << fewest << " and " << most << ": ";
       if (result.iterations >= fewest && result.iterations <= most)
         out << "yes";
@@ -43,7 +42,7 @@ namespace ModelProblem
         out << "NO, " << result.iterations;
       if (compare)
       {
-        make_linear_solver(direct, problem.layout, problem.node_positions)->solve(problem.system, reference);
+        make_linear_solver(direct, problem.layout, problem.nodes())->solve(problem.system, reference);
         out << ", as direct to " << tolerance << ": " << yes(difference(x, reference) < tolerance);
       }
       out << std::endl;
@@ -121,7 +120,7 @@ namespace ModelProblem
     try
     {
       BlockVector x;
-      make_linear_solver(parameters, problem.layout, problem.node_positions)->solve(problem.system, x);
+      make_linear_solver(parameters, problem.layout, problem.nodes())->solve(problem.system, x);
     }
     catch (const SolverFailure &failure)
     {

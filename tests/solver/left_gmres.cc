@@ -36,11 +36,10 @@ int main(int argc, char **argv)
   const SaddlePointOperator A(problem.system);
   const BlockVector         b = A.scaled(problem.system.rhs);
   BlockVector               x(b), solution, reference;
-  make_linear_solver(LinearSolverParameters(), problem.layout, problem.node_positions)
-      ->solve(problem.system, reference);
+  make_linear_solver(LinearSolverParameters(), problem.layout, problem.nodes())->solve(problem.system, reference);
 
   const auto                amg = make_displacement_preconditioner(LinearSolverParameters::Preconditioner::nodus, 3);
-  const BlockPreconditioner preconditioner(A, 3., problem.node_positions, *amg);
+  const BlockPreconditioner preconditioner(A, 3., problem.nodes(), *amg);
   const auto                multigrid = [&](BlockVector &z, const BlockVector &r) { preconditioner.vmult(z, r); };
   for (const double tolerance : {1e-4, 1e-8, 1e-13})
   {

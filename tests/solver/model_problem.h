@@ -2,6 +2,7 @@
 #define nodus_tests_solver_model_problem_h
 
 #include "base/deal_ii_versions.h"
+#include "bulk/cell_corners.h"
 #include "solve/linear_solver.h"
 
 #include <deal.II/base/quadrature_lib.h>
@@ -51,6 +52,7 @@ namespace ModelProblem
     BlockLayout        layout;
     LinearSystem       system;
     std::vector<Point> node_positions;
+    CellCorners        corners;
 
     explicit TwoCubes(const Options &options)
         : options(options)
@@ -60,6 +62,7 @@ namespace ModelProblem
     {
       make_mesh();
       dof_handler.distribute_dofs(fe);
+      corners = cell_corners(dof_handler);
       assemble_bulk();
       if (options.buckles)
         add_pushing_spring();
@@ -67,6 +70,11 @@ namespace ModelProblem
       system.layout = &layout;
       layout.reinit(system.rhs);
       assemble_contact();
+    }
+
+    DisplacementNodes nodes() const
+    {
+      return {node_positions, corners};
     }
 
   private:

@@ -90,6 +90,24 @@ namespace Nodus
           if (double &entry = rows[a][first + a][(n_modes + 1) * m]; entry == 0.)
             entry = largest > 0. ? largest : 1.;
     }
+
+    /// Calls f(part of the row, part of the column, its first entry) for the 3x3 blocks that are not zero: corners of
+    /// cells have neighbours that the other corner of their pair has not.
+    template <typename Function>
+    void for_parts(const CoarseRow::Block &block, const Function &f)
+    {
+      for (unsigned int part = 0; part < n_parts; ++part)
+        for (unsigned int other = 0; other < n_parts; ++other)
+        {
+          const double *const entry = block.data() + n_modes * dim * part + dim * other;
+          bool                zero  = true;
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int d = 0; d < dim; ++d)
+              zero = zero && entry[n_modes * c + d] == 0.;
+          if (!zero)
+            f(part, other, entry);
+        }
+    }
   } // namespace
 
   std::unique_ptr<BlockCsrMatrix> make_coarse_matrix(std::vector<CoarseRow>       rows,
@@ -121,12 +139,15 @@ namespace Nodus
                    [&](const std::uint32_t i, std::vector<std::uint32_t> &columns)
                    {
                      rows[i / n_parts].for_each(
-                         [&](const DoFIndex column, const CoarseRow::Block &)
+                         [&](const DoFIndex column, const CoarseRow::Block &block)
                          {
                            const unsigned int j = map->local(n_parts * column);
-                           for (unsigned int part = 0; part < n_parts; ++part)
-                             if (j + part > i)
-                               columns.push_back(j + part);
+                           for_parts(block,
+                                     [&](const unsigned int part, const unsigned int other, const double *)
+                                     {
+                                       if (part == i % n_parts && j + other > i)
+                                         columns.push_back(j + other);
+                                     });
                          });
                    });
     for (unsigned int a = 0; a < n_owned; ++a)
@@ -135,15 +156,16 @@ namespace Nodus
           [&](const DoFIndex column, const CoarseRow::Block &block)
           {
             const unsigned int j = map->local(n_parts * column);
-            for (unsigned int part = 0; part < n_parts; ++part)
-              for (unsigned int other = 0; other < n_parts; ++other)
-                if (j + other >= n_parts * a + part)
-                {
-                  double *target = matrix->block(matrix->position(n_parts * a + part, j + other).block());
-                  for (unsigned int c = 0; c < dim; ++c)
-                    for (unsigned int d = 0; d < dim; ++d)
-                      target[dim * c + d] = block[n_modes * (dim * part + c) + dim * other + d];
-                }
+            for_parts(block,
+                      [&](const unsigned int part, const unsigned int other, const double *const entry)
+                      {
+                        if (j + other < n_parts * a + part)
+                          return;
+                        double *target = matrix->block(matrix->position(n_parts * a + part, j + other).block());
+                        for (unsigned int c = 0; c < dim; ++c)
+                          for (unsigned int d = 0; d < dim; ++d)
+                            target[dim * c + d] = entry[n_modes * c + d];
+                      });
           });
       rows[a] = CoarseRow(); // before the next ones are copied
     }
