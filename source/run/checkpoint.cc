@@ -92,6 +92,8 @@ namespace Nodus
         unsigned int       crc   = 0;
         if (!(entry >> name >> bytes >> crc) || name.find('/') != std::string::npos)
           return "its index has the line '" + line + "', which names no file";
+        if (std::find(pieces.begin(), pieces.end(), checkpoint / name) != pieces.end())
+          return "its index has " + name + " twice";
         const std::vector<char> content = read_file(checkpoint / name);
         if (content.size() != bytes)
           return name + " has " + std::to_string(content.size()) + " bytes instead of " + std::to_string(bytes);

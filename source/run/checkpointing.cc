@@ -201,15 +201,16 @@ namespace Nodus
                                  model_.communicator);
     path.continue_from(common.path);
     model_.look_ahead(path.planned_times());
-    journal_.tables->continue_from(common.rows);
-    if (VtuOutput *const vtu = results_.vtu())
-      vtu->continue_from(common.series);
-
     match_mesh(found->pieces);
     read_pieces(found->pieces);
     unpack_common(common.state, states_.now);
     states_.committed = states_.now;
     model_.roll_back(states_);
+
+    // now that nothing can be refused any more
+    journal_.tables->continue_from(common.rows);
+    if (VtuOutput *const vtu = results_.vtu())
+      vtu->continue_from(common.series);
     std::ostringstream text;
     text << "Continues after increment " << found->increment << ", t = " << path.time();
     journal_.console.line(text.str());

@@ -66,6 +66,16 @@ namespace
     rest << in.rdbuf();
     std::ofstream(file) << line << '\n' << rest.str();
   }
+
+  void repeat_second_line(const fs::path &file)
+  {
+    std::ifstream in(file);
+    std::string   first, second;
+    std::getline(in, first);
+    std::getline(in, second);
+    in.close();
+    set_first_line(file, first + '\n' + second);
+  }
 } // namespace
 
 int main(int argc, char **argv)
@@ -171,6 +181,10 @@ int main(int argc, char **argv)
   put(kept, checkpoints);
   set_first_line(checkpoints / "000006" / "index", "nodus checkpoint 20\n");
   check_words("an index with an empty line is passed over", restart(p), {"increment 5"});
+
+  put(kept, checkpoints);
+  repeat_second_line(checkpoints / "000006" / "index");
+  check_words("an index with a file twice is passed over", restart(p), {"increment 5"});
 
   put(kept, checkpoints);
   fs::rename(checkpoints / "000006", checkpoints / "000006.incomplete");

@@ -11,9 +11,6 @@ namespace Nodus
   {
     /// Unknowns of the level that is solved exactly.
     constexpr unsigned int largest_coarsest = 400;
-    /// Sweeps of the smoother on coarse levels over those on the finest one: they cost little, and a correction of
-    /// degree 1 is better than one of aggregates.
-    constexpr unsigned int more_sweeps = 2, more_sweeps_of_degree_1 = 3;
 
     unsigned int size(const BlockCsrMatrix &matrix)
     {
@@ -51,18 +48,18 @@ namespace Nodus
                        const ConstrainedMatrix &A,
                        std::vector<double>      modes,
                        const DisplacementNodes &nodes,
-                       const unsigned int       smoother_sweeps)
+                       unsigned int             smoother_sweeps)
   {
     const bool                      corners = !nodes.corners.pairs.empty();
     std::unique_ptr<BlockCsrMatrix> matrix =
         add_level(K, nullptr, &A, modes, corners ? &nodes : nullptr, smoother_sweeps);
+    smoother_sweeps *= 2; // the coarse levels cost little
     bool stalls = false;
     while (!stalls && size(*matrix) > largest_coarsest)
     {
       auto                           copy     = std::make_unique<ConstrainedMatrix>(*matrix);
       const ConstrainedMatrix *const A_coarse = copy.get();
-      const unsigned int             factor   = corners && levels_.size() == 1 ? more_sweeps_of_degree_1 : more_sweeps;
-      auto next = add_level(*matrix, std::move(copy), A_coarse, modes, nullptr, factor * smoother_sweeps);
+      auto next = add_level(*matrix, std::move(copy), A_coarse, modes, nullptr, smoother_sweeps);
       stalls    = size(*next) > .5 * size(*matrix);
       matrix    = std::move(next);
     }
