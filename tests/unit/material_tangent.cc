@@ -80,6 +80,47 @@ namespace
       std::cout << "    error " << error << std::endl;
   }
 
+  /// Likewise of stress and energy at the states that F leads to from rest.
+  double states_error(const Nodus::Material &material, const Nodus::Lanes (&F)[dim][dim])
+  {
+    using namespace Nodus;
+    const unsigned int      n = material.n_state();
+    std::vector<double>     rest(n), state(n);
+    std::vector<Lanes>      states(n);
+    Tensor<2, dim>          F_one[n_lanes];
+    SymmetricTensor<2, dim> S_one, stress[n_lanes];
+    double                  stored[n_lanes], error = 0.;
+    material.set_initial(rest.data());
+    for (unsigned int v = 0; v < n_lanes; ++v)
+    {
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          F_one[v][i][j] = F[i][j][v];
+      material.update(F_one[v], rest.data(), state.data(), S_one, nullptr);
+      for (unsigned int i = 0; i < n; ++i)
+        states[i][v] = state[i];
+      stress[v] = material.cauchy_stress(F_one[v], state.data());
+      stored[v] = material.stored_energy(F_one[v], state.data());
+    }
+    for (const bool by_default : {false, true})
+    {
+      Lanes S[n_pairs], energy;
+      if (by_default)
+        material.Material::stress_and_energy_lanes(F, states.data(), S, energy);
+      else
+        material.stress_and_energy_lanes(F, states.data(), S, energy);
+      for (unsigned int v = 0; v < n_lanes; ++v)
+      {
+        for (unsigned int r = 0; r < n_pairs; ++r)
+          S_one.access_raw_entry(r) = S[r][v];
+        if (!material.small_strain())
+          S_one = symmetrize(F_one[v] * Tensor<2, dim>(S_one) * transpose(F_one[v])) / determinant(F_one[v]);
+        error = std::max({error, (S_one - stress[v]).norm() / E, std::abs(energy[v] - stored[v]) / E});
+      }
+    }
+    return error;
+  }
+
   /// Largest difference of several points at once from one after the other, relative; also of the default that asks
   /// evaluate().
   double lanes_error(const Nodus::Material &material)
@@ -110,7 +151,7 @@ namespace
         }
       }
     }
-    return error;
+    return std::max(error, states_error(material, F));
   }
 
   /// What the stress is the derivative of: the stored energy and, for a step with plastic flow from rest, the work of
