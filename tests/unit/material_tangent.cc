@@ -5,6 +5,7 @@
 
 #include "../numbers.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
