@@ -1,4 +1,5 @@
 #include "bulk/cell_corners.h"
+#include "base/deal_ii_versions.h"
 #include "parallel/all_gather.h"
 
 #include <deal.II/base/mpi.h>
@@ -74,7 +75,7 @@ namespace Nodus
                     result.nodes.push_back(node_of(nodes[corner]));
                   }
               });
-    const MPI_Comm     comm    = dof_handler.get_communicator();
+    const MPI_Comm     comm    = communicator_of(dof_handler);
     const unsigned int n_pairs = (result.nodes.size() + 1) / 2;
     result.pairs.assign(1, 0);
     for (const unsigned int n : all_gather(comm, n_pairs))

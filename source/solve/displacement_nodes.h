@@ -4,6 +4,7 @@
 #include <nodus/base/types.h>
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace Nodus
