@@ -13,6 +13,9 @@
 #include <deal.II/fe/mapping_q1.h>
 #include <deal.II/grid/grid_generator.h>
 
+#include <boost/serialization/map.hpp>
+#include <boost/serialization/set.hpp>
+
 #include <algorithm>
 #include <iostream>
 #include <map>
@@ -65,12 +68,12 @@ namespace
       farthest = std::max(farthest, (middle - Tensor<1, dim>(place(i))).norm());
       ++counts[n];
     }
-    std::set<std::array<double, dim>> vertices;
+    std::set<std::vector<double>> vertices;
     for (const auto &cell : mesh.active_cell_iterators())
       if (!cell->is_artificial())
         for (const unsigned int v : cell->vertex_indices())
-          vertices.insert({{cell->vertex(v)[0], cell->vertex(v)[1], cell->vertex(v)[2]}});
-    std::set<std::array<double, dim>> all_vertices;
+          vertices.insert(std::vector<double>{cell->vertex(v)[0], cell->vertex(v)[1], cell->vertex(v)[2]});
+    std::set<std::vector<double>> all_vertices;
     for (const auto &of_rank : Nodus::all_gather(MPI_COMM_WORLD, vertices))
       all_vertices.insert(of_rank.begin(), of_rank.end());
     out << "corners: " << all.size() << ", vertices: " << all_vertices.size() << std::endl;
