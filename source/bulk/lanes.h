@@ -32,6 +32,21 @@ namespace Nodus
   constexpr unsigned int pair_first[6]    = {0, 1, 2, 0, 0, 1};
   constexpr unsigned int pair_second[6]   = {0, 1, 2, 1, 2, 2};
 
+  /// F G F^T; G null: the identity
+  inline void push_forward(const Lanes (&F)[dim][dim], const Lanes *G, Lanes (&result)[n_pairs])
+  {
+    Lanes FG[dim][dim];
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int J = 0; J < dim; ++J)
+        FG[i][J] =
+            G ? F[i][0] * G[pair_index[0][J]] + F[i][1] * G[pair_index[1][J]] + F[i][2] * G[pair_index[2][J]] : F[i][J];
+    for (unsigned int r = 0; r < n_pairs; ++r)
+    {
+      const unsigned int i = pair_first[r], j = pair_second[r];
+      result[r] = FG[i][0] * F[j][0] + FG[i][1] * F[j][1] + FG[i][2] * F[j][2];
+    }
+  }
+
   /// F^T F
   inline void right_cauchy_green(const Lanes (&F)[dim][dim], Lanes (&result)[n_pairs])
   {

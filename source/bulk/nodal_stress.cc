@@ -5,6 +5,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_dgq.h>
+#include <deal.II/fe/fe_tools.h>
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/full_matrix.h>
 
@@ -47,9 +48,7 @@ namespace Nodus
     const unsigned int n      = scalar.n_dofs_per_cell();
     const QGauss<dim>  quadrature(fe.degree + 1);
     FullMatrix<double> shape(quadrature.size(), n);
-    for (unsigned int q = 0; q < quadrature.size(); ++q)
-      for (unsigned int a = 0; a < n; ++a)
-        shape(q, a) = scalar.shape_value(a, quadrature.point(q));
+    FETools::compute_interpolation_to_quadrature_points_matrix(scalar, quadrature, shape);
     std::vector<std::array<unsigned int, dim>> number(n); // of a node's components in the cell
     for (unsigned int a = 0; a < n; ++a)
       for (unsigned int c = 0; c < dim; ++c)

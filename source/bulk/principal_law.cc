@@ -69,21 +69,6 @@ namespace Nodus
         value[a] = A[a][a];
     }
 
-    /// F G F^T; G null: the identity
-    void push_forward(const Lanes (&F)[dim][dim], const Lanes *G, Lanes (&result)[n_pairs])
-    {
-      Lanes FG[dim][dim];
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int J = 0; J < dim; ++J)
-          FG[i][J] = G ? F[i][0] * G[pair_index[0][J]] + F[i][1] * G[pair_index[1][J]] + F[i][2] * G[pair_index[2][J]]
-                       : F[i][J];
-      for (unsigned int r = 0; r < n_pairs; ++r)
-      {
-        const unsigned int i = pair_first[r], j = pair_second[r];
-        result[r] = FG[i][0] * F[j][0] + FG[i][1] * F[j][1] + FG[i][2] * F[j][2];
-      }
-    }
-
     /// result[axis] = F^-1 n[axis]
     void pull_back(const Lanes (&F)[dim][dim], const Lanes (&n)[dim][dim], Lanes (&result)[dim][dim])
     {

@@ -26,17 +26,12 @@ namespace Nodus
         material.stress_and_energy_lanes(F, state, response.cauchy_stress, response.energy);
         return;
       }
-      Lanes S[n_pairs], FS[dim][dim], J;
+      Lanes S[n_pairs], J;
       material.stress_and_energy_lanes(F, state, S, response.energy);
       determinant(F, J);
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int K = 0; K < dim; ++K)
-          FS[i][K] = F[i][0] * S[pair_index[0][K]] + F[i][1] * S[pair_index[1][K]] + F[i][2] * S[pair_index[2][K]];
-      for (unsigned int r = 0; r < n_pairs; ++r)
-      {
-        const unsigned int i = pair_first[r], j = pair_second[r];
-        response.cauchy_stress[r] = (FS[i][0] * F[j][0] + FS[i][1] * F[j][1] + FS[i][2] * F[j][2]) / J;
-      }
+      push_forward(F, S, response.cauchy_stress);
+      for (Lanes &stress : response.cauchy_stress)
+        stress /= J;
     }
   } // namespace
 

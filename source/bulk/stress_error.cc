@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe.h>
+#include <deal.II/fe/fe_tools.h>
 #include <deal.II/lac/full_matrix.h>
 
 namespace Nodus
@@ -21,9 +22,7 @@ namespace Nodus
     const unsigned int         n      = scalar.n_dofs_per_cell();
     const dealii::QGauss<dim>  quadrature(fe.degree + 1);
     dealii::FullMatrix<double> shape(quadrature.size(), n);
-    for (unsigned int q = 0; q < quadrature.size(); ++q)
-      for (unsigned int a = 0; a < n; ++a)
-        shape(q, a) = scalar.shape_value(a, quadrature.point(q));
+    dealii::FETools::compute_interpolation_to_quadrature_points_matrix(scalar, quadrature, shape);
 
     std::vector<DoFIndex>                        dofs(fe.n_dofs_per_cell());
     std::vector<dealii::SymmetricTensor<2, dim>> nodal(n);

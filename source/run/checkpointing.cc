@@ -119,7 +119,6 @@ namespace Nodus
       , states_(states)
       , equilibrium_(equilibrium)
       , results_(results)
-      , keys_(checkpointed_model(model.parameters))
       , checkpoints_(model.parameters.output.results_folder, model.communicator)
   {
   }
@@ -136,11 +135,18 @@ namespace Nodus
     return checkpoints_.find().has_value();
   }
 
+  const std::map<std::string, std::string> &Checkpointing::keys()
+  {
+    if (keys_.empty())
+      keys_ = checkpointed_model(model_.parameters);
+    return keys_;
+  }
+
   void Checkpointing::write(const LoadStepping &path)
   {
     const auto             timer    = journal_.profile.time(Phase::output);
     const ContactSurfaces &surfaces = model_.contact->surfaces();
-    Common                 common{keys_, path, pack_common(states_.committed), journal_.tables->rows(), {}};
+    Common                 common{keys(), path, pack_common(states_.committed), journal_.tables->rows(), {}};
     if (const VtuOutput *const vtu = results_.vtu())
       common.series = vtu->series();
 
@@ -192,7 +198,7 @@ namespace Nodus
     if (!found->remark.empty())
       journal_.console.line("Passed over: " + found->remark);
     const Common      common = dealii::Utilities::unpack<Common>(found->common);
-    const std::string other  = first_difference(common.model, keys_, common.path.time());
+    const std::string other  = first_difference(common.model, keys(), common.path.time());
     throw_everywhere<InputError>(other.empty()
                                      ? ""
                                      : "the checkpoint in " + model_.parameters.output.results_folder +

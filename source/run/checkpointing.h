@@ -35,8 +35,10 @@ namespace Nodus
     void heed_signals(const LoadStepping &path);
 
   private:
-    void match_mesh(const std::vector<std::filesystem::path> &pieces);
-    void read_pieces(const std::vector<std::filesystem::path> &pieces);
+    /// Of the model that checkpoints belong to, collected once: all files of the model are read for it.
+    const std::map<std::string, std::string> &keys();
+    void                                      match_mesh(const std::vector<std::filesystem::path> &pieces);
+    void                                      read_pieces(const std::vector<std::filesystem::path> &pieces);
 
     Model       &model_;
     Journal     &journal_;
@@ -44,8 +46,8 @@ namespace Nodus
     Equilibrium &equilibrium_;
     Results     &results_;
 
-    const std::map<std::string, std::string> keys_; ///< of the model that checkpoints belong to
-    Checkpoints                              checkpoints_;
+    std::map<std::string, std::string> keys_; ///< see keys()
+    Checkpoints                        checkpoints_;
   };
 } // namespace Nodus
 

@@ -280,7 +280,8 @@ def check_bodies(find, state, row_of):
         force, moment = (loads * own).sum(axis=0), np.cross(X if small else x, loads * own).sum(axis=0)
         sizes = scale + np.linalg.norm(loads * own, axis=1).sum()
         # springs are as sure as displacements in single precision
-        digits = sum(geometry.SINGLE * np.linalg.norm(own * state.springs(c)[0], axis=1).sum() for c in state.case.conditions if c["Type"] == "spring")
+        springs = [state.springs(c)[0] for c in state.case.conditions if c["Type"] == "spring"]
+        digits = geometry.SINGLE * sum(np.linalg.norm(own * f, axis=1).sum() for f in springs)
         for pair in state.pairs:
             for role in ("slave", "master"):
                 if int(pair.keys[f"{role.capitalize()} body"]) == b:

@@ -4,7 +4,6 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
-#include <array>
 
 namespace Nodus
 {
@@ -27,6 +26,9 @@ namespace Nodus
 
     const unsigned int n = dim * n_nodes_;
     P_.start.assign(1, 0);
+    // more than enough: pages that are not touched take no memory, growing would take twice as much
+    P_.column.reserve(corners.corners.size());
+    P_.blocks.reserve(block_size * corners.corners.size() + 2);
     for (unsigned int i = 0; i < n_nodes_; ++i)
     {
       const std::uint32_t begin = corners.start[i], end = corners.start[i + 1], row = P_.column.size();
