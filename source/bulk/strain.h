@@ -1,9 +1,7 @@
 #ifndef nodus_bulk_strain_h
 #define nodus_bulk_strain_h
 
-#include <nodus/base/types.h>
-
-#include <deal.II/base/symmetric_tensor.h>
+#include "bulk/principal_axes.h"
 
 #include <cmath>
 
@@ -19,8 +17,8 @@ namespace Nodus
   inline dealii::SymmetricTensor<2, dim> logarithmic_strain(const dealii::Tensor<2, dim> &F)
   {
     dealii::SymmetricTensor<2, dim> strain;
-    for (const auto &[stretch_squared, axis] : dealii::eigenvectors(dealii::symmetrize(F * dealii::transpose(F))))
-      strain += 0.5 * std::log(stretch_squared) * dealii::symmetrize(dealii::outer_product(axis, axis));
+    for (const PrincipalAxis &axis : principal_axes(dealii::symmetrize(F * dealii::transpose(F)))) // stretches squared
+      strain += 0.5 * std::log(axis.value) * dealii::symmetrize(dealii::outer_product(axis.direction, axis.direction));
     return strain;
   }
 } // namespace Nodus

@@ -12,13 +12,13 @@ namespace Nodus
     template <unsigned int i>
     void principal_stress(const BodyNode &node, VtuGrid::Array &out)
     {
-      out << node.principal()[i].first;
+      out << node.principal()[i].value;
     }
 
     template <unsigned int i>
     void principal_direction(const BodyNode &node, VtuGrid::Array &out)
     {
-      out << node.principal()[i].second;
+      out << node.principal()[i].direction;
     }
 
     const std::vector<VtuField<BodyNode>> body_fields = {

@@ -2,6 +2,7 @@
 #define nodus_output_vtu_fields_h
 
 #include "bulk/nodal_stress.h"
+#include "bulk/principal_axes.h"
 #include "output/vtu_grid.h"
 #include "parameters/output_fields.h"
 #include <nodus/contact/contact_fields.h>
@@ -9,7 +10,6 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace Nodus
@@ -22,17 +22,17 @@ namespace Nodus
     {
     }
     /// Principal Cauchy stresses, the largest one first, and their directions.
-    const std::array<std::pair<double, dealii::Tensor<1, dim>>, std::size_t(dim)> &principal() const
+    const std::array<PrincipalAxis, dim> &principal() const
     {
       if (!principal_)
-        principal_ = dealii::eigenvectors(values.cauchy_stress);
+        principal_ = principal_axes(values.cauchy_stress);
       return *principal_;
     }
 
     const StressAndStrain &values;
 
   private:
-    mutable std::optional<std::array<std::pair<double, dealii::Tensor<1, dim>>, std::size_t(dim)>> principal_;
+    mutable std::optional<std::array<PrincipalAxis, dim>> principal_;
   };
 
   /// A slave node of a contact pair.

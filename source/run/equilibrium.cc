@@ -99,9 +99,9 @@ namespace Nodus
 
   void Equilibrium::begin_attempt(const MergedLoops &merged)
   {
-    merged_    = merged;
-    singular_  = false;
-    predicted_ = guess_ = false;
+    merged_   = merged;
+    singular_ = false;
+    start_    = {};
     if (arc_length_.acts() && increment_.end != increment_.begin) // of the attempt before
     {
       increment_.end = increment_.begin;
@@ -125,8 +125,8 @@ namespace Nodus
     u += motion;
     model_.rigid_bodies.go_on(part);
     model_.rigid_bodies.move(u);
-    predicted_ = guess_ = model_.contact->visible_part(last.unknowns.block(0), u) == 1.;
-    if (guess_)
+    start_.predicted = start_.guess = model_.contact->visible_part(last.unknowns.block(0), u) == 1.;
+    if (start_.guess)
       return;
     u                 = last.unknowns.block(0);
     states_.now.rigid = last.rigid;
@@ -159,19 +159,11 @@ namespace Nodus
     anchor_ = anchor;
   }
 
-  const LinearSystem &Equilibrium::symmetric_system(const double rate)
+  NewtonProblem::Norms Equilibrium::evaluate(const bool measure, const bool last)
   {
-    const double held   = model_.stabilisation->relaxation();
-    const bool   merged = std::exchange(merged_.threshold, false);
-    model_.stabilisation->relax(rate);
-    evaluate(true);
-    merged_.threshold = merged;
-    model_.stabilisation->relax(held);
-    return system_;
-  }
-
-  NewtonProblem::Norms Equilibrium::evaluate(const bool measure)
-  {
+    // The loops around Newton begin where it ends, with this tangent; and what is driven reads its forces in it.
+    has_tangent_ = !last || !merged_.all() || model_.rigid_bodies.size() > 0 || arc_length_.acts() ||
+                   model_.stabilisation->rate() > 0.;
     const Vector &u      = states_.now.unknowns.block(0);
     u_                   = u;
     constraints_         = &model_.boundary_conditions->increment_constraints(u_);
@@ -179,9 +171,12 @@ namespace Nodus
     {
       const auto timer = journal_.profile.time(Phase::bulk_assembly);
       Vector    &rhs   = system_.rhs.block(0);
-      model_.solid->tangent(u_, increment_.end, assembly, system_.bulk, rhs, forces_.internal, forces_.external);
+      if (has_tangent_)
+        model_.solid->tangent(u_, increment_.end, assembly, system_.bulk, rhs, forces_.internal, forces_.external);
+      else
+        model_.solid->forces(u_, increment_.end, forces_.internal, forces_.external);
       forces_.external += forces_.released;
-      rhs += forces_.released;
+      rhs += forces_.released; // of no use without tangent
       forces_.drag = 0.;
       if (const double rate = model_.stabilisation->rate(); rate > 0.)
       {
@@ -253,7 +248,10 @@ namespace Nodus
     model_.contact->set_prescribed(prescribed);
 
     system_.rhs.block(0) = bulk_rhs_;
-    model_.contact->assemble(system_, merged_.threshold);
+    if (has_tangent_)
+      model_.contact->assemble(system_, merged_.threshold);
+    else
+      model_.contact->evaluate();
     forces_.contact = 0.;
     model_.contact->add_forces(forces_.contact);
 
@@ -281,7 +279,12 @@ namespace Nodus
 
   unsigned int Equilibrium::solve(BlockVector &correction, const double relative_tolerance)
   {
-    guess_ = false;
+    start_.guess = false;
+    if (!has_tangent_)
+    {
+      evaluate(false, false);
+      assemble_contact();
+    }
     // A converged iterate never needs it, and far from balance it leads astray: sites pass on to other faces.
     if (merged_.geometry && !scattered_)
     {
@@ -364,7 +367,7 @@ namespace Nodus
     const double part = model_.contact->visible_part(iterate_.unknowns.block(0), states_.now.unknowns.block(0));
     if (part == 1.)
       return;
-    if (predicted_)
+    if (start_.predicted)
       throw SolverFailure("the motion of the last increment leads astray: from there a correction goes through the "
                           "other surface",
                           SolverFailure::Kind::newton_stalled);

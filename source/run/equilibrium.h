@@ -24,6 +24,10 @@ namespace Nodus
     {
       return geometry || threshold || status;
     }
+    bool all() const
+    {
+      return geometry && threshold && status;
+    }
     /// "geometry, status" and the like, empty for none.
     std::string names() const;
   };
@@ -60,13 +64,13 @@ namespace Nodus
     /// The loops around Newton begin (anew).
     void begin_loops();
 
-    Norms        evaluate(bool measure) override;
+    Norms        evaluate(bool measure, bool last) override;
     Norms        accept(unsigned int iteration) override;
     unsigned int solve(BlockVector &correction, double relative_tolerance) override;
     void         move(double factor, const BlockVector &correction) override;
     bool         is_guess() const override
     {
-      return guess_;
+      return start_.guess;
     }
 
     /// The attempt starts where the motion of the last increment leads in the time of this one, prescribed
@@ -76,7 +80,7 @@ namespace Nodus
     /// Whether the attempt at hand started so.
     bool predicted() const
     {
-      return predicted_;
+      return start_.predicted;
     }
     /// The motion of the increment, which has been found, is what the next one goes on along, if it @p guides that.
     void keep_motion(bool guides);
@@ -87,10 +91,7 @@ namespace Nodus
     /// The system at the state at hand without variation, symmetric, with dashpots of @p rate. Collective.
     const LinearSystem &symmetric_system(double rate);
     /// LinearSolver::solve_again() for the last correction.
-    bool solve_again(const BlockVector &rhs, BlockVector &solution)
-    {
-      return solver_->solve_again(system_, rhs, solution);
-    }
+    bool solve_again(const BlockVector &rhs, BlockVector &solution);
     /// Of dashpots in a relaxation, in the increment at hand [energy].
     void add_relaxed_work(const double work)
     {
@@ -186,15 +187,19 @@ namespace Nodus
       BlockVector                     unknowns;
       std::vector<RigidBodies::State> rigid;
     } iterate_; ///< that the correction starts from
+    struct
+    {
+      bool predicted = false; ///< along the motion of the last increment
+      bool guess     = false; ///< likewise, and nothing is corrected yet
+    } start_;                 ///< of the attempt
     Increment   increment_;
     MergedLoops merged_;
     std::string cycling_;
     DoFIndex    null_pivot_        = dealii::numbers::invalid_dof_index;
     bool        singular_          = false;
-    bool        predicted_         = false; ///< the attempt started along the motion of the last increment
-    bool        guess_             = false; ///< likewise, and nothing is corrected yet
     bool        unstable_          = false;
     bool        scattered_         = false; ///< an iterate is far from balance
+    bool        has_tangent_       = false; ///< system_ is that of the trial
     bool        motions_unknown_   = false; ///< an interval begins
     double      step_limit_        = 1.;    ///< part of the correction that may be taken
     double      prescribed_before_ = 0.;    ///< still to be met at the last iterate, relative

@@ -1,7 +1,9 @@
 #include "run/equilibrium.h"
 #include "run/unheld_bodies.h"
 
-// What others hear of an equilibrium: forces, statuses that change, and what nothing holds.
+#include <utility>
+
+// What others hear of an equilibrium: forces, systems, statuses that change, and what nothing holds.
 
 namespace Nodus
 {
@@ -31,6 +33,25 @@ namespace Nodus
           constraints.is_constrained(i) ? forces_.internal(i) - forces_.external(i) + forces_.contact(i) : 0.;
     reactions.compress(dealii::VectorOperation::insert);
     return reactions;
+  }
+
+  const LinearSystem &Equilibrium::symmetric_system(const double rate)
+  {
+    const double held   = model_.stabilisation->relaxation();
+    const bool   merged = std::exchange(merged_.threshold, false);
+    model_.stabilisation->relax(rate);
+    evaluate(true, false);
+    merged_.threshold = merged;
+    model_.stabilisation->relax(held);
+    return system_;
+  }
+
+  bool Equilibrium::solve_again(const BlockVector &rhs, BlockVector &solution)
+  {
+    // symmetric, as long as there is no variation: the bulk may be that of the iterate before
+    if (!has_tangent_ && solver_->type() != LinearSolverParameters::Type::direct)
+      model_.contact->assemble(system_);
+    return solver_->solve_again(system_, rhs, solution);
   }
 
   /// Names the rigid motions that nothing holds as the increment begins: contact has to, or the system is singular.

@@ -23,6 +23,17 @@ namespace Nodus
       return std::min(largest, std::max(term, 0.1 / residual));
     }
 
+    /// Residual in units of the tolerance up to which an iterate without changes goes on to converge as it did.
+    constexpr double near_end = 1e3;
+
+    /// Whether the correction at @p residual, where no choice has changed, will be the last one if Newton's method
+    /// converges quadratically from @p before on.
+    bool is_last(const double residual, const double before)
+    {
+      const double ratio = residual / before;
+      return residual <= near_end && residual * ratio * ratio <= 1.;
+    }
+
     /// Part of the largest force that an iterate leaves out of balance which is on its way to an equilibrium.
     constexpr double near_balance = 0.5;
 
@@ -58,7 +69,7 @@ namespace Nodus
   {
     Report      report;
     BlockVector correction;
-    problem.evaluate(false);
+    problem.evaluate(false, false);
     NewtonProblem::Norms norms = problem.accept(0);
     log(0, norms, 0);
     double       before = 0., forcing = parameters_.largest_forcing_term, best = std::numeric_limits<double>::max();
@@ -90,12 +101,13 @@ namespace Nodus
 
       if (report.iterations > 0)
         forcing = forcing_term(now, before, forcing, parameters_.largest_forcing_term);
+      const bool last                      = report.iterations > 0 && norms.changes == 0 && is_last(now, before);
       before                               = now;
       const unsigned int krylov_iterations = problem.solve(correction, forcing);
       report.krylov_iterations += krylov_iterations;
       ++report.iterations;
       // with nothing left to choose, a step that leads back up belongs to a cycle at a kink of a law
-      take_step(problem, correction, norms, parameters_.line_search || (idle > 0 && norms.changes == 0));
+      take_step(problem, correction, norms, parameters_.line_search || (idle > 0 && norms.changes == 0), last);
       norms = problem.accept(report.iterations);
       log(report.iterations, norms, krylov_iterations);
     }
@@ -105,7 +117,8 @@ namespace Nodus
   void Newton::take_step(NewtonProblem              &problem,
                          const BlockVector          &correction,
                          const NewtonProblem::Norms &norms,
-                         const bool                  line_search) const
+                         const bool                  line_search,
+                         const bool                  last) const
   {
     // The first correction moves the prescribed displacements: its force residual says nothing about progress. Where a
     // status has just changed, forces balance still and the contact laws do not: the largest of the norms is what
@@ -114,17 +127,17 @@ namespace Nodus
     double     step   = 1.;
     for (unsigned int halving = 0;; ++halving)
     {
-      const bool last = halving == halvings_;
+      const bool shortest = halving == halvings_;
       problem.move(step, correction);
       try
       {
-        const NewtonProblem::Norms trial = problem.evaluate(search && !last);
-        if (!search || last || residual(trial) <= std::max(residual(norms), 1.))
+        const NewtonProblem::Norms trial = problem.evaluate(search && !shortest, last);
+        if (!search || shortest || residual(trial) <= std::max(residual(norms), 1.))
           return;
       }
       catch (const SolverFailure &failure)
       {
-        if (last || failure.kind() != SolverFailure::Kind::inverted_cell)
+        if (shortest || failure.kind() != SolverFailure::Kind::inverted_cell)
           throw;
       }
       step *= 0.5;

@@ -23,10 +23,11 @@ namespace Nodus
     };
 
     virtual ~NewtonProblem() = default;
-    /// Forces and their tangent at the trial iterate, every choice (pairing, thresholds, statuses) as it is.
+    /// Forces and their tangent at the trial iterate, every choice (pairing, thresholds, statuses) as it is. @p last:
+    /// no correction is expected from here, the tangent may wait until solve() wants it.
     /// @returns the norms of the trial if @p measure, otherwise zeros. @throws SolverFailure where they do not exist,
     /// of the kind inverted_cell where half the step may help.
-    virtual Norms evaluate(bool measure) = 0;
+    virtual Norms evaluate(bool measure, bool last) = 0;
     /// The trial that was evaluated last is the iterate from here on: the choices follow it. @p iteration: corrections
     /// so far. Completes the residual. @throws SolverFailure
     virtual Norms accept(unsigned int iteration) = 0;
@@ -69,11 +70,12 @@ namespace Nodus
     bool converged(const NewtonProblem::Norms &norms) const;
 
   private:
-    /// Moves to a trial that exists and, with line search, decreases the largest norm.
+    /// Moves to a trial that exists and, with line search, decreases the largest norm. @p last: as of evaluate().
     void take_step(NewtonProblem              &problem,
                    const BlockVector          &correction,
                    const NewtonProblem::Norms &norms,
-                   bool                        line_search) const;
+                   bool                        line_search,
+                   bool                        last) const;
     /// Largest norm in units of its tolerance.
     double residual(const NewtonProblem::Norms &norms) const;
 

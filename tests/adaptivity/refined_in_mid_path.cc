@@ -200,7 +200,8 @@ int main(int argc, char **argv)
     if (scheme != Scheme::averaged)
       continue;
     // written by all ranks and read by one, then the other way round
-    const auto check_restart = [&](const MPI_Comm writes, const MPI_Comm reads, const unsigned int interval)
+    const auto check_restart =
+        [&, scheme = scheme](const MPI_Comm writes, const MPI_Comm reads, const unsigned int interval)
     {
       Parameters p                 = dragged_block(scheme, "mid_path_results");
       p.output.checkpoint_interval = interval;

@@ -3,7 +3,8 @@
 // so is, with line search, one that does not decrease the largest residual; any other failure goes up after one trial,
 // and of a trial that is rejected nothing is left; progress is measured from the first correction on. Newton's iterates
 // for arctan(x) = 0 go away from 0 by themselves from 1.4 on (1.5, -1.69, 2.32, -5.11, ...): the steps are halved once
-// they have, but not while choices change.
+// they have, but not while choices change. The tangent of an iterate that is expected to be the last one waits: one
+// that converges quadratically ends there, one that gains two digits each time goes on once.
 
 #include "solve/newton.h"
 #include "run/fixed_point_loop.h"
@@ -41,7 +42,7 @@ namespace
       norms.contact = std::abs(x * y - 1);
       return norms;
     }
-    Norms evaluate(const bool measure) override
+    Norms evaluate(const bool measure, bool) override
     {
       ++trials;
       if (x > domain)
@@ -82,7 +83,7 @@ namespace
         , first(first_residual)
     {
     }
-    Norms evaluate(bool) override
+    Norms evaluate(bool, bool) override
     {
       return {};
     }
@@ -116,7 +117,7 @@ namespace
       norms.force = std::abs(std::atan(x));
       return norms;
     }
-    Norms evaluate(bool) override
+    Norms evaluate(bool, bool) override
     {
       ++trials;
       return norms();
@@ -142,6 +143,36 @@ namespace
     }
   };
 
+  /// Residuals that fall by two digits with each correction.
+  struct TwoDigits : public NewtonProblem
+  {
+    double       residual = 5e-4;
+    bool         waits    = false;    ///< the tangent
+    unsigned int late = 0, never = 0; ///< tangents
+    Norms        evaluate(bool, const bool last) override
+    {
+      waits = last;
+      never += last;
+      return {};
+    }
+    Norms accept(unsigned int) override
+    {
+      Norms norms;
+      norms.force = residual;
+      return norms;
+    }
+    unsigned int solve(BlockVector &, double) override
+    {
+      late += waits;
+      never -= waits;
+      return 0;
+    }
+    void move(double, const BlockVector &) override
+    {
+      residual *= 1e-2;
+    }
+  };
+
   void none(unsigned int, const NewtonProblem::Norms &, unsigned int)
   {
   }
@@ -159,6 +190,11 @@ int main(int argc, char **argv)
   std::cout << "solution to 1e-12: " << (std::abs(problem.x - exact) + std::abs(problem.y - 1 / exact) < 1e-12)
             << std::endl;
   std::cout << "iterations " << report.iterations << ", Krylov iterations " << report.krylov_iterations << std::endl;
+
+  TwoDigits two_digits;
+  report = Newton(parameters).solve(two_digits, none);
+  std::cout << "two digits each: iterations " << report.iterations << ", tangents late " << two_digits.late
+            << ", never " << two_digits.never << std::endl;
 
   report = Newton(parameters).solve(problem, none);
   std::cout << "from the solution, iterations " << report.iterations << std::endl;
