@@ -119,7 +119,7 @@ namespace Nodus
       return direct().solve_again(system, rhs, solution);
     if (!choice_.open())
       return false;
-    constexpr double tolerance = 1e-2;
+    constexpr double tolerance = 0.1;
     try
     {
       std::vector<BlockVector> solutions;

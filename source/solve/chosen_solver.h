@@ -49,7 +49,7 @@ namespace Nodus
                  const std::vector<const BlockVector *> &rhs,
                  std::vector<BlockVector>               &solutions,
                  double                                  relative_tolerance) override;
-    /// Where the iterative solver was chosen it solves to a hundredth: that is enough to tell an instability.
+    /// Where the iterative solver was chosen it solves to a tenth: that is enough to tell an instability.
     bool solve_again(const LinearSystem &system, const BlockVector &rhs, BlockVector &solution) override;
 
   private:
