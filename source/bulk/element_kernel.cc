@@ -21,12 +21,15 @@ namespace Nodus
                      const History &history,
                      Lanes         *force,
                      Lanes         *stiffness,
-                     Lanes         &det_F) override
+                     Lanes         &det_F,
+                     Lanes         *energy) override
       {
         const bool         small_strain = material.small_strain();
         const unsigned int n_state      = material.n_state();
         std::fill_n(force, dim * n_nodes, Lanes{});
         det_F = Lanes{} + 1.;
+        if (energy)
+          *energy = Lanes{};
         for (unsigned int q = 0; q < n_q; ++q)
         {
           Lanes F[dim][dim], S[n_pairs], C[n_pairs][n_pairs];
@@ -38,11 +41,15 @@ namespace Nodus
             if (!Base::note_smallest(here, det_F))
               return;
           }
-          if (n_state > 0)
-            material.update_lanes(
-                F, history.before + q * n_state, history.after + q * n_state, S, stiffness ? &C : nullptr);
-          else
-            material.evaluate_lanes(F, S, stiffness ? &C : nullptr);
+          Lanes density;
+          material.update_lanes(F,
+                                history.before + q * n_state,
+                                history.after + q * n_state,
+                                S,
+                                stiffness ? &C : nullptr,
+                                energy ? &density : nullptr);
+          if (energy)
+            *energy += points[q].JxW * density;
           for (Lanes &s : S)
             s *= points[q].JxW;
           add_force(F, S, small_strain, q, force);

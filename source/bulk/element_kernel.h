@@ -41,6 +41,7 @@ namespace Nodus
     /// @param u displacement, @param force int P : Grad phi, both [node][component]
     /// @param stiffness d(force)/du, [node a][node b >= a][component of a][component of b]; not computed when null
     /// @param det_F the smallest of each cell; 1 for small strain. Nothing else is defined when one is not positive.
+    /// @param energy stored in each cell; not computed when null, never together with @p stiffness
     virtual void integrate(const QuadraturePoint *points,
                            const Material        &material,
                            const Lanes           *u,
@@ -48,7 +49,8 @@ namespace Nodus
                            const History         &history,
                            Lanes                 *force,
                            Lanes                 *stiffness,
-                           Lanes                 &det_F) = 0;
+                           Lanes                 &det_F,
+                           Lanes                 *energy) = 0;
 
     /// Whether integrate() looks at the previous iterate.
     virtual bool has_own_unknowns() const

@@ -37,10 +37,17 @@ namespace Nodus
     evaluate(F, S, C);
   }
 
-  void Material::update_lanes(
-      const Lanes (&F)[dim][dim], const Lanes *, Lanes *, Lanes (&S)[n_pairs], Lanes (*C)[n_pairs][n_pairs]) const
+  void Material::update_lanes(const Lanes (&F)[dim][dim],
+                              const Lanes *const before,
+                              Lanes *,
+                              Lanes (&S)[n_pairs],
+                              Lanes (*const C)[n_pairs][n_pairs],
+                              Lanes *const energy) const
   {
-    evaluate_lanes(F, S, C);
+    if (energy)
+      stress_and_energy_lanes(F, before, S, *energy);
+    else
+      evaluate_lanes(F, S, C);
   }
 
   void Material::evaluate_lanes(const Lanes (&F)[dim][dim], Lanes (&S)[n_pairs], Lanes (*C)[n_pairs][n_pairs]) const

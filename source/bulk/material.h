@@ -70,12 +70,14 @@ namespace Nodus
                         dealii::SymmetricTensor<2, dim> &S,
                         dealii::SymmetricTensor<4, dim> *C) const;
 
-    /// update() at a point of n_lanes cells at once.
+    /// update() at a point of n_lanes cells at once, and stored_energy() at its end; not computed when null. Never both
+    /// @p C and @p energy.
     virtual void update_lanes(const Lanes (&F)[dim][dim],
                               const Lanes *before,
                               Lanes       *after,
                               Lanes (&S)[n_pairs],
-                              Lanes (*C)[n_pairs][n_pairs]) const;
+                              Lanes (*C)[n_pairs][n_pairs],
+                              Lanes *energy) const;
 
     /// Stored energy per reference volume, zero at F = I; of a law with history: after the response to F from rest.
     virtual double energy(const dealii::Tensor<2, dim> &F) const = 0;

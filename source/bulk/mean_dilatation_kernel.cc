@@ -28,7 +28,8 @@ namespace Nodus
                      const History         &history,
                      Lanes                 *force,
                      Lanes                 *stiffness,
-                     Lanes                 &det_F) override
+                     Lanes                 &det_F,
+                     Lanes                 *energy) override
       {
         const bool         small_strain = material.small_strain();
         const unsigned int n_state      = material.n_state();
@@ -42,6 +43,8 @@ namespace Nodus
           return;
 
         Lanes pressure[n_modes] = {};
+        if (energy)
+          *energy = Lanes{};
         if (stiffness)
           for (unsigned int k = 0; k < n_modes; ++k)
           {
@@ -51,12 +54,15 @@ namespace Nodus
           }
         for (unsigned int q = 0; q < n_q; ++q)
         {
-          Lanes S[n_pairs], C[n_pairs][n_pairs];
-          if (n_state > 0)
-            material.update_lanes(
-                F_[q], history.before + q * n_state, history.after + q * n_state, S, stiffness ? &C : nullptr);
-          else
-            material.evaluate_lanes(F_[q], S, stiffness ? &C : nullptr);
+          Lanes S[n_pairs], C[n_pairs][n_pairs], density;
+          material.update_lanes(F_[q],
+                                history.before + q * n_state,
+                                history.after + q * n_state,
+                                S,
+                                stiffness ? &C : nullptr,
+                                energy ? &density : nullptr);
+          if (energy)
+            *energy += points[q].JxW * density;
           for (Lanes &s : S)
             s *= points[q].JxW;
           add_point(points[q].JxW, small_strain, q, S, stiffness ? &C : nullptr, pressure);

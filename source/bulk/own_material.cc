@@ -98,7 +98,8 @@ namespace Nodus
                                  const Lanes *const before,
                                  Lanes *const       after,
                                  Lanes (&S)[n_pairs],
-                                 Lanes (*C)[n_pairs][n_pairs]) const
+                                 Lanes (*C)[n_pairs][n_pairs],
+                                 Lanes *const energy) const
   {
     const unsigned int      n = n_state();
     std::vector<double>     state_before(n), state_after(n);
@@ -114,6 +115,8 @@ namespace Nodus
       set_lane(S_cell, C_cell, v, S, C);
       for (unsigned int i = 0; i < n; ++i)
         after[i][v] = state_after[i];
+      if (energy)
+        (*energy)[v] = law_->stored_energy(F_cell, state_after.data());
     }
   }
 

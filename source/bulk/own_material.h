@@ -29,7 +29,8 @@ namespace Nodus
                               const Lanes *before,
                               Lanes       *after,
                               Lanes (&S)[n_pairs],
-                              Lanes (*C)[n_pairs][n_pairs]) const override;
+                              Lanes (*C)[n_pairs][n_pairs],
+                              Lanes *energy) const override;
     double       energy(const dealii::Tensor<2, dim> &F) const override;
     double       stored_energy(const dealii::Tensor<2, dim> &F, const double *state) const override;
     double       dissipation(const double *state) const override;

@@ -106,9 +106,10 @@ namespace Nodus
                                   const Lanes *before,
                                   Lanes       *after,
                                   Lanes (&S)[n_pairs],
-                                  Lanes (*C)[n_pairs][n_pairs]) const
+                                  Lanes (*C)[n_pairs][n_pairs],
+                                  Lanes *energy) const
   {
-    respond_lanes(F, before, after, S, C, nullptr);
+    respond_lanes(F, before, n_state() > 0 ? after : nullptr, S, C, energy);
   }
 
   void PrincipalLaw::stress_and_energy_lanes(const Lanes (&F)[dim][dim],
@@ -140,9 +141,9 @@ namespace Nodus
         principal.strain[a] = std::log(stretch_squared[a][v]) / 2.;
       if (has_history)
         principal.plastic_strain = before[n_pairs][v];
-      if (energy)
-        (*energy)[v] = energy_of(principal.strain);
       respond(principal);
+      if (energy)
+        (*energy)[v] = energy_of(after ? principal.elastic_strain : principal.strain);
       for (unsigned int a = 0; a < dim; ++a)
       {
         stress[a][v] = principal.stress[a];
@@ -216,7 +217,7 @@ namespace Nodus
     copy_to_lanes(F, F_lanes);
     for (unsigned int s = 0; s < n_state(); ++s)
       before_lanes[s] = Lanes{} + before[s];
-    update_lanes(F_lanes, before_lanes, after_lanes, S_lanes, C ? &C_lanes : nullptr);
+    update_lanes(F_lanes, before_lanes, after_lanes, S_lanes, C ? &C_lanes : nullptr, nullptr);
     for (unsigned int s = 0; s < n_state(); ++s)
       after[s] = after_lanes[s][0];
     for (unsigned int r = 0; r < n_pairs; ++r)

@@ -31,7 +31,8 @@ namespace Nodus
                         const Lanes *before,
                         Lanes       *after,
                         Lanes (&S)[n_pairs],
-                        Lanes (*C)[n_pairs][n_pairs]) const override;
+                        Lanes (*C)[n_pairs][n_pairs],
+                        Lanes *energy) const override;
     void   stress_and_energy_lanes(const Lanes (&F)[dim][dim],
                                    const Lanes *state,
                                    Lanes (&S)[n_pairs],

@@ -18,6 +18,14 @@ namespace Nodus
 {
   struct LinearSystem;
 
+  /// Of the bodies' cells on this rank [energy].
+  struct InnerEnergy
+  {
+    double stored     = 0.; ///< at the quadrature points, without springs
+    double dissipated = 0.; ///< by plastic flow so far
+    double stiffness  = 0.; ///< Young's modulus times volume
+  };
+
   /// Internal and external forces of the bodies and their tangent, total Lagrangian, full integration
   /// ((degree+1)^3 Gauss points), on the reference configuration. Holds the states of laws with history at these
   /// points: those that the increment starts from, and where the last displacement leads to from there.
@@ -37,9 +45,9 @@ namespace Nodus
 
     /// Nodal forces at displacement @p u (with ghosts) and time @p t, no constraints applied:
     /// @p internal = int P:Grad phi (plus springs), @p external = loads. Both fully distributed; those of hanging nodes
-    /// are given to the nodes that they follow.
+    /// are given to the nodes that they follow. @p energy: of the states that @p u leads to; null: not computed.
     /// @throws SolverFailure on every rank when det F <= 0 anywhere, with cell centre and body.
-    void forces(const Vector &u, double t, Vector &internal, Vector &external) const;
+    void forces(const Vector &u, double t, Vector &internal, Vector &external, InnerEnergy *energy = nullptr) const;
 
     /// As forces(), and in the same sweep the tangent K_t = d(internal - external)/du with prescribed displacements
     /// eliminated (a positive diagonal on their rows), and @p rhs = -(internal - external) - K_t b likewise, b the

@@ -33,13 +33,15 @@ namespace Nodus
                Vector                                  &external,
                const dealii::AffineConstraints<double> *constraints,
                BlockCsrMatrix                          *tangent,
-               Vector                                  *rhs);
+               Vector                                  *rhs,
+               InnerEnergy                             *energy);
 
     const dealii::DoFHandler<dim>                &dof_handler;
     const std::vector<std::unique_ptr<Material>> &materials;
     std::vector<std::shared_ptr<ElementKernel>>   kernels; ///< of the bodies; those with the same treatment share it
     Loads                                         loads;
     unsigned int                                  n_nodes, n_q; ///< per cell
+    double stiffness_of_cells = 0.;                             ///< Young's modulus times volume of those owned
 
     struct Cell
     {
@@ -121,8 +123,13 @@ namespace Nodus
     bool
     is_last(const Vector &u, double t, const dealii::AffineConstraints<double> *constraints, BlockCsrMatrix *tangent);
     void note_prescribed(const dealii::AffineConstraints<double> *constraints);
-    /// Force at the displacement in #at_lanes, into the same; with @p with_stiffness also #stiffness.
-    void compute(const Batch &batch, bool with_stiffness, Lanes &det_F);
+    /// Force at the displacement in #at_lanes, into the same; with @p with_stiffness also #stiffness, otherwise adds to
+    /// @p energy, if that is asked for.
+    void compute(const Batch &batch, bool with_stiffness, Lanes &det_F, InnerEnergy *energy);
+    void add_energy(const Batch                          &batch,
+                    const ElementKernel::QuadraturePoint *points,
+                    const Lanes                          &stored,
+                    InnerEnergy                          &energy) const;
     void compute_rigid(const Batch &batch, Lanes &det_F);
     /// Message for a cell with det F <= 0, or nothing.
     std::string turned_inside_out(const Batch &batch, const Lanes &det_F) const;

@@ -40,7 +40,7 @@ namespace Nodus
   {
   }
 
-  void EnergyAudit::account()
+  void EnergyAudit::account(const InnerEnergy &inner)
   {
     const Increment   &increment = equilibrium_.increment();
     const NodalForces &forces    = equilibrium_.forces();
@@ -53,7 +53,7 @@ namespace Nodus
                  rest_before = increment.left_to_release(increment.begin);
     const auto &constraints  = model_.boundary_conditions->homogeneous_constraints();
     Energies    of_increment;
-    double      stored = 0., plastic = 0., resolution = 0.;
+    double      stored = inner.stored, plastic = inner.dissipated, resolution = resolved * inner.stiffness;
     for (const DoFIndex i : model_.contact->surfaces().layout().owned[0])
     {
       const double moved   = now.unknowns.block(0)(i) - start.unknowns.block(0)(i);
@@ -67,20 +67,7 @@ namespace Nodus
     of_increment.contact  = work.surfaces;
     of_increment.friction = work.friction;
 
-    // What is stored and dissipated.
-    const Vector u = model_.with_ghosts(now.unknowns.block(0));
-    model_.solid->visit(u,
-                        [&](const auto &cell, const std::vector<SolidAssembler::PointResult> &points)
-                        {
-                          const double modulus = model_.materials[cell->material_id()]->youngs_modulus();
-                          for (const auto &point : points)
-                          {
-                            resolution += resolved * modulus * point.JxW;
-                            stored += point.stored_energy * point.JxW;
-                            plastic += point.dissipation * point.JxW;
-                          }
-                        });
-    stored += model_.solid->spring_energy(u);
+    stored += model_.solid->spring_energy(model_.with_ghosts(now.unknowns.block(0)));
     if (dealii::Utilities::MPI::this_mpi_process(model_.communicator) == 0)
       of_increment.external += model_.rigid_bodies.work(start.rigid, equilibrium_.driven().applied());
 

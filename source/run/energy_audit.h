@@ -15,9 +15,9 @@ namespace Nodus
     EnergyAudit(const Model &model, Journal &journal, States &states, const Equilibrium &equilibrium);
 
     /// The increment has converged and its materials are committed; displacements, forces and jumps that it started
-    /// from are those of the committed state. Adds its energies to those of the state at hand. Collective.
-    /// @throws SolverFailure on every rank where an energy is not finite
-    void account();
+    /// from are those of the committed state. Adds its energies to those of the state at hand. @p inner: what the judge
+    /// has found of that. Collective. @throws SolverFailure on every rank where an energy is not finite
+    void account(const InnerEnergy &inner);
 
   private:
     /// What contact does at this rank's sites: work of rigid masters, of normal forces and of friction on elastic slip

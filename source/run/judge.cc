@@ -247,7 +247,7 @@ namespace Nodus
     for (const auto &[v, map] :
          {std::make_pair(&internal, &given.internal), {&external, &given.external}, {&contact, &given.contact}})
       v->reinit(*map, true);
-    model_.solid->forces(u, t, internal, external);
+    model_.solid->forces(u, t, internal, external, &inner_energy_);
     external += given.released;
     external += given.drag;
     contact = 0.;
@@ -362,19 +362,22 @@ namespace Nodus
       const auto &pair = model_.parameters.contact_pairs[p];
       if (pair.contact_law == ContactPairParameters::ContactLaw::tied)
         continue;
-      const auto where = [&](const Intrusion::Node &node)
+      const auto raise = [&](Verdict::Finding &finding, const double value, const Intrusion::Node &node)
       {
-        return std::string(node.side == slave_side ? "slave" : "master") + " node " + coordinates(node.X) + " of " +
-               pair_label(model_.parameters.contact_pairs, p);
+        if (value > finding.value)
+          finding.raise(value,
+                        std::string(node.side == slave_side ? "slave" : "master") + " node " + coordinates(node.X) +
+                            " of " + pair_label(model_.parameters.contact_pairs, p),
+                        p);
       };
       const Intrusion &intrusion = intrusions[p];
       const double     inside    = intrusion.depth - adjusted[p];
       if (closed[p] > 0)
-        depth.raise(inside / smaller_face_[p], where(intrusion.deepest), p);
+        raise(depth, inside / smaller_face_[p], intrusion.deepest);
       else
-        unseen.raise((inside - bulge[p]) / smaller_face_[p], where(intrusion.deepest), p);
+        raise(unseen, (inside - bulge[p]) / smaller_face_[p], intrusion.deepest);
       if (intrusion.passed > 0)
-        passed.raise(passed.value + intrusion.passed, where(intrusion.first_passed), p);
+        raise(passed, passed.value + intrusion.passed, intrusion.first_passed);
     }
   }
 } // namespace Nodus

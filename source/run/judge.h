@@ -25,6 +25,11 @@ namespace Nodus
     /// Of the state at hand at the end of the increment at hand. @p rest: whether a geometry loop has left something
     /// out of balance, and said so (IncrementLoops::rest()). Collective.
     Verdict judge(double rest = 0.);
+    /// Of the state that was judged last.
+    const InnerEnergy &inner_energy() const
+    {
+      return inner_energy_;
+    }
 
   private:
     void   set_up();
@@ -48,6 +53,7 @@ namespace Nodus
     double                            length_ = 0.; ///< of the step, that gaps and slips are measured against
     double                            force_  = 0.; ///< that forces are measured against, at least
     double                            rest_   = 0.; ///< of the geometry loop
+    InnerEnergy                       inner_energy_;
   };
 } // namespace Nodus
 

@@ -229,7 +229,7 @@ namespace Nodus
     Model &model = parts_.model;
     now.history  = model.solid->reached();
     model.solid->start_from(now.history);
-    audit_.account();
+    audit_.account(judge_.inner_energy());
     if (!parts_.equilibrium.increment().on_new_mesh())
       parts_.equilibrium.keep_motion(!parts_.strategy.relaxed());
     model.contact->end_increment(parts_.equilibrium.increment().duration());

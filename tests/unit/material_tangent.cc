@@ -103,6 +103,13 @@ namespace
       stress[v] = material.cauchy_stress(F_one[v], state.data());
       stored[v] = material.stored_energy(F_one[v], state.data());
     }
+    std::vector<Lanes> at_rest(n), after(n);
+    for (unsigned int i = 0; i < n; ++i)
+      at_rest[i] = Lanes{} + rest[i];
+    Lanes S_after[n_pairs], energy_after;
+    material.update_lanes(F, at_rest.data(), after.data(), S_after, nullptr, &energy_after);
+    for (unsigned int v = 0; v < n_lanes; ++v)
+      error = std::max(error, std::abs(energy_after[v] - stored[v]) / E);
     for (const bool by_default : {false, true})
     {
       Lanes S[n_pairs], energy;

@@ -134,7 +134,8 @@ namespace
                          {},
                          force.data(),
                          stiffness.data(),
-                         det_F);
+                         det_F,
+                         nullptr);
     }
 
     /// Entry of the stiffness of the cell in a lane, i and j in the order of the element's degrees of freedom.
