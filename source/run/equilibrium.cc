@@ -110,38 +110,6 @@ namespace Nodus
     model_.contact->begin_attempt();
   }
 
-  void Equilibrium::predict()
-  {
-    const State &last = states_.committed;
-    if (last.motion_time == 0. || increment_.begins_interval() || increment_.on_new_mesh() || increment_.arc > 0.)
-      return;
-    u_                = states_.now.unknowns.block(0);
-    constraints_      = &model_.boundary_conditions->increment_constraints(u_);
-    const double part = increment_.duration() / last.motion_time;
-    Vector       motion(last.motion);
-    motion *= part;
-    constraints_->distribute(motion);
-    Vector &u = states_.now.unknowns.block(0);
-    u += motion;
-    model_.rigid_bodies.go_on(part);
-    model_.rigid_bodies.move(u);
-    start_.predicted = start_.guess = model_.contact->visible_part(last.unknowns.block(0), u) == 1.;
-    if (start_.guess)
-      return;
-    u                 = last.unknowns.block(0);
-    states_.now.rigid = last.rigid;
-  }
-
-  void Equilibrium::keep_motion(const bool guides)
-  {
-    State       &now   = states_.now;
-    const State &start = states_.committed;
-    now.motion         = now.unknowns.block(0);
-    now.motion -= start.unknowns.block(0);
-    now.motion_time = guides ? increment_.duration() : 0.;
-    model_.rigid_bodies.keep_motion(start.rigid);
-  }
-
   void Equilibrium::begin_loops()
   {
     driven_.begin_loops();
@@ -277,13 +245,21 @@ namespace Nodus
     return norms;
   }
 
-  unsigned int Equilibrium::solve(BlockVector &correction, const double relative_tolerance)
+  /// Adds what is not symmetric, the dearest part. @returns whether it is that of the last system, which will do as
+  /// well.
+  bool Equilibrium::complete_tangent(const bool again)
   {
-    start_.guess = false;
     if (!has_tangent_)
     {
       evaluate(false, false);
       assemble_contact();
+    }
+    // what is driven has a part of it in the border
+    if (again && variation_.complete && model_.rigid_bodies.size() == 0 && !arc_length_.acts())
+    {
+      system_.variation = variation_.entries;
+      system_.symmetric = variation_.symmetric;
+      return true;
     }
     // A converged iterate never needs it, and far from balance it leads astray: sites pass on to other faces.
     if (merged_.geometry && !scattered_)
@@ -292,9 +268,24 @@ namespace Nodus
       model_.contact->add_geometry_tangent(system_);
     }
     model_.solid->add_variation(u_, *constraints_, system_);
-    const auto timer  = journal_.profile.time(Phase::solver_iterations);
-    iterate_.unknowns = states_.now.unknowns;
-    iterate_.rigid    = states_.now.rigid;
+    variation_ = {system_.variation, system_.symmetric, !merged_.geometry || !scattered_};
+    return false;
+  }
+
+  unsigned int Equilibrium::solve(BlockVector &correction, const double relative_tolerance, const bool again)
+  {
+    start_.guess         = false;
+    const bool as_before = complete_tangent(again);
+    const auto timer     = journal_.profile.time(Phase::solver_iterations);
+    iterate_.unknowns    = states_.now.unknowns;
+    iterate_.rigid       = states_.now.rigid;
+    if (as_before && solver_->type() == LinearSolverParameters::Type::direct &&
+        solver_->solve_again(system_, system_.rhs, correction))
+    {
+      constraints_->distribute(correction.block(0));
+      limit_step(correction);
+      return 0;
+    }
     std::optional<TimeRates> rates;
     if (arc_length_.acts())
       rates = arc_length_.rates(increment_.end, u_, driven_, merged_.threshold, merged_.geometry);

@@ -66,7 +66,7 @@ namespace Nodus
 
     Norms        evaluate(bool measure, bool last) override;
     Norms        accept(unsigned int iteration) override;
-    unsigned int solve(BlockVector &correction, double relative_tolerance) override;
+    unsigned int solve(BlockVector &correction, double relative_tolerance, bool again) override;
     void         move(double factor, const BlockVector &correction) override;
     bool         is_guess() const override
     {
@@ -165,22 +165,29 @@ namespace Nodus
   private:
     void        impose();
     Norms       assemble_contact();
+    bool        complete_tangent(bool again);
     void        limit_step(const BlockVector &correction);
     void        warn_of_free_motions();
     std::string ways_to_hold(const std::string &first) const;
 
-    Model                                   &model_;
-    Journal                                 &journal_;
-    States                                  &states_;
-    std::unique_ptr<ChosenSolver>            solver_;
-    DrivenRigidBodies                        driven_;
-    ArcLength                                arc_length_;
-    LinearSystem                             system_;
-    NodalForces                              forces_;
-    Vector                                   u_;      ///< displacements with ghosts, of the trial
-    Vector                                   anchor_; ///< of the dashpots that hold() sets
-    double                                   relaxed_work_ = 0.;
-    Vector                                   bulk_rhs_;              ///< right-hand side before contact
+    Model                        &model_;
+    Journal                      &journal_;
+    States                       &states_;
+    std::unique_ptr<ChosenSolver> solver_;
+    DrivenRigidBodies             driven_;
+    ArcLength                     arc_length_;
+    LinearSystem                  system_;
+    NodalForces                   forces_;
+    Vector                        u_;      ///< displacements with ghosts, of the trial
+    Vector                        anchor_; ///< of the dashpots that hold() sets
+    double                        relaxed_work_ = 0.;
+    Vector                        bulk_rhs_; ///< right-hand side before contact
+    struct
+    {
+      TripletMatrix entries;
+      bool          symmetric = true;  ///< there are none, on any rank
+      bool          complete  = false; ///< with what the geometry adds, where that is merged
+    } variation_;                      ///< of the last system
     const dealii::AffineConstraints<double> *constraints_ = nullptr; ///< of the trial
     struct
     {

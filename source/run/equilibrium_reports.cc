@@ -3,10 +3,43 @@
 
 #include <utility>
 
-// What others hear of an equilibrium: forces, systems, statuses that change, and what nothing holds.
+// The motion that an attempt starts along, and what others hear of an equilibrium: forces, systems, statuses that
+// change, and what nothing holds.
 
 namespace Nodus
 {
+  void Equilibrium::predict()
+  {
+    const State &last = states_.committed;
+    if (last.motion_time == 0. || increment_.begins_interval() || increment_.on_new_mesh() || increment_.arc > 0.)
+      return;
+    u_                = states_.now.unknowns.block(0);
+    constraints_      = &model_.boundary_conditions->increment_constraints(u_);
+    const double part = increment_.duration() / last.motion_time;
+    Vector       motion(last.motion);
+    motion *= part;
+    constraints_->distribute(motion);
+    Vector &u = states_.now.unknowns.block(0);
+    u += motion;
+    model_.rigid_bodies.go_on(part);
+    model_.rigid_bodies.move(u);
+    start_.predicted = start_.guess = model_.contact->visible_part(last.unknowns.block(0), u) == 1.;
+    if (start_.guess)
+      return;
+    u                 = last.unknowns.block(0);
+    states_.now.rigid = last.rigid;
+  }
+
+  void Equilibrium::keep_motion(const bool guides)
+  {
+    State       &now   = states_.now;
+    const State &start = states_.committed;
+    now.motion         = now.unknowns.block(0);
+    now.motion -= start.unknowns.block(0);
+    now.motion_time = guides ? increment_.duration() : 0.;
+    model_.rigid_bodies.keep_motion(start.rigid);
+  }
+
   Vector Equilibrium::applied_forces() const
   {
     const auto &constraints = model_.boundary_conditions->homogeneous_constraints();
@@ -48,8 +81,8 @@ namespace Nodus
 
   bool Equilibrium::solve_again(const BlockVector &rhs, BlockVector &solution)
   {
-    // Factors are at hand; an iterative solver takes half as long without variation, with the bulk of the iterate before
-    // where that is the last tangent.
+    // Factors are at hand; an iterative solver takes half as long without variation, with the bulk of the iterate
+    // before where that is the last tangent.
     if (solver_->type() != LinearSolverParameters::Type::direct && !(has_tangent_ && system_.symmetric))
       model_.contact->assemble(system_);
     return solver_->solve_again(system_, rhs, solution);

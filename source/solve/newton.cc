@@ -24,14 +24,23 @@ namespace Nodus
     }
 
     /// Residual in units of the tolerance up to which an iterate without changes goes on to converge as it did.
-    constexpr double near_end = 1e3;
+    constexpr double near_end = 1e4;
+    /// Residual, likewise, that the tangent of the iterate before may be expected to lead to.
+    constexpr double kept_residual = 0.05;
 
     /// Whether the correction at @p residual, where no choice has changed, will be the last one if Newton's method
-    /// converges quadratically from @p before on.
+    /// converges quadratically from @p before on (eq. N7).
     bool is_last(const double residual, const double before)
     {
       const double ratio = residual / before;
       return residual <= near_end && residual * ratio * ratio <= 1.;
+    }
+
+    /// Whether the tangent at the iterate of residual @p before leads from @p residual to one that is small enough:
+    /// where Newton's method converges quadratically, it leaves the product of the two errors (eq. N7).
+    bool keeps_tangent(const double residual, const double before)
+    {
+      return residual <= near_end && residual * residual <= kept_residual * before;
     }
 
     /// Part of the largest force that an iterate leaves out of balance which is on its way to an equilibrium.
@@ -101,9 +110,11 @@ namespace Nodus
 
       if (report.iterations > 0)
         forcing = forcing_term(now, before, forcing, parameters_.largest_forcing_term);
-      const bool last                      = report.iterations > 0 && norms.changes == 0 && is_last(now, before);
+      const bool settled                   = report.iterations > 0 && norms.changes == 0;
+      const bool again                     = settled && keeps_tangent(now, before);
+      const bool last                      = again || (settled && is_last(now, before));
       before                               = now;
-      const unsigned int krylov_iterations = problem.solve(correction, forcing);
+      const unsigned int krylov_iterations = problem.solve(correction, forcing, again);
       report.krylov_iterations += krylov_iterations;
       ++report.iterations;
       // with nothing left to choose, a step that leads back up belongs to a cycle at a kink of a law

@@ -32,8 +32,9 @@ namespace Nodus
     /// so far. Completes the residual. @throws SolverFailure
     virtual Norms accept(unsigned int iteration) = 0;
     /// Completes the tangent and finds the @p correction, whose linear residual is reduced by @p relative_tolerance at
-    /// least. Returns the Krylov iterations.
-    virtual unsigned int solve(BlockVector &correction, double relative_tolerance) = 0;
+    /// least. @p again: no choice has changed since the last one and the iterate has hardly moved, so that its tangent,
+    /// or what of it is dear, will do. Returns the Krylov iterations.
+    virtual unsigned int solve(BlockVector &correction, double relative_tolerance, bool again) = 0;
     /// The iterate is a guess at which no system has been solved: it is corrected once in any case, so that what the
     /// tangent says of it (stability) is seen.
     virtual bool is_guess() const

@@ -29,7 +29,7 @@ int main(int argc, char **argv)
     ghosts.insert(ghosts.end(), {start[rank + 1], start[rank + 1] + 1});
   const auto number = [&](const unsigned int i) { return i < n_own ? start[rank] + i : ghosts[i - n_own]; };
   const auto value  = [&](const unsigned int i, const unsigned int c, const unsigned int round)
-  { return 1. + number(i) + 1e-3 * c + 100. * round; };
+  { return 1. + number(i) + c / 1024. + 100. * round; }; // exact
 
   Nodus::GhostExchange first = Nodus::GhostExchange::numbered_through(start, ghosts, world()),
                        other = Nodus::GhostExchange::numbered_through(start, ghosts, world());
