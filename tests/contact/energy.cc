@@ -4,6 +4,7 @@
 
 #include "run/energy_audit.h"
 #include "run/increment_loops.h"
+#include "run/judge.h"
 #include "run/strategy.h"
 
 #include <deal.II/base/mpi.h>
@@ -248,17 +249,19 @@ int main(int argc, char **argv)
       IncrementLoops     loops(model, journal, states, equilibrium, [] {});
       Strategy           strategy(model, journal, states, equilibrium, loops);
       EnergyAudit        audit(model, journal, states, equilibrium);
+      Judge              judge(model, states, equilibrium);
       journal.tables = std::make_unique<Tables>(p.output.results_folder, world(), std::vector<std::string>());
       equilibrium.begin_on_mesh();
       model.begin_contact(states, 0.);
       equilibrium.begin_increment(path.at_hand());
       strategy.solve_increment();
+      judge.judge();
       states.now.history = model.solid->reached();
       model.solid->start_from(states.now.history);
       states.now.energies.stored = change;
       try
       {
-        audit.account();
+        audit.account(judge.inner_energy());
       }
       catch (const SolverFailure &failure)
       {
