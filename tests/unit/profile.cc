@@ -90,7 +90,9 @@ int main(int argc, char **argv)
       check("Newton iterations", newton > 3 && profile.get<unsigned int>("newton_iterations") == newton);
       check("Krylov iterations", (profile.get<unsigned int>("krylov_iterations") > 0) == !direct);
       check("one solve in each iteration", phase(profile, "solver iterations").get<unsigned int>("calls") == newton);
-      check("a set-up in each iteration", phase(profile, "solver set-up").get<unsigned int>("calls") >= newton);
+      // the direct solver may keep the factors of the iteration before, which is close to the end: at most one of three
+      const unsigned int set_ups = phase(profile, "solver set-up").get<unsigned int>("calls");
+      check("set-ups for the iterations", direct ? set_ups <= newton && 3 * set_ups >= 2 * newton : set_ups >= newton);
       check("assembled before and after each solve",
             phase(profile, "bulk assembly").get<unsigned int>("calls") >= newton + 3 &&
                 phase(profile, "contact assembly").get<unsigned int>("calls") >= newton + 3);
