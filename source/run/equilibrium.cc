@@ -130,8 +130,8 @@ namespace Nodus
   NewtonProblem::Norms Equilibrium::evaluate(const bool measure, const bool last)
   {
     // The loops around Newton begin where it ends, with this tangent; and what is driven reads its forces in it.
-    has_tangent_ = !last || !merged_.all() || model_.rigid_bodies.size() > 0 || arc_length_.acts() ||
-                   model_.stabilisation->rate() > 0.;
+    has_tangent_ = !last || !merged_.all(model_.contact->has_friction()) || model_.rigid_bodies.size() > 0 ||
+                   arc_length_.acts() || model_.stabilisation->rate() > 0.;
     const Vector &u      = states_.now.unknowns.block(0);
     u_                   = u;
     constraints_         = &model_.boundary_conditions->increment_constraints(u_);

@@ -24,9 +24,10 @@ namespace Nodus
     {
       return geometry || threshold || status;
     }
-    bool all() const
+    /// Thresholds are those of friction.
+    bool all(const bool with_friction) const
     {
-      return geometry && threshold && status;
+      return geometry && status && (threshold || !with_friction);
     }
     /// "geometry, status" and the like, empty for none.
     std::string names() const;

@@ -21,6 +21,8 @@ namespace Nodus
     /// about one iteration, in a model of any size.
     constexpr double       growth       = 1.4;
     constexpr unsigned int most_changed = 4;
+    /// Iterations that end before that do not count: the first digit takes more than others.
+    constexpr double one_digit = 0.1;
 
     /// Condensation, one multigrid cycle and expansion: exact but for multigrid and the variation.
     class CondensedCycle
@@ -193,9 +195,9 @@ namespace Nodus
         ++n_set_up;
         iterations = iterate(matrix, *condensation, b, tolerance, x);
       }
-      if (first)
+      if (first && tolerance < one_digit)
       {
-        last_iterations_ = iterations / -std::log10(std::min(tolerance, 0.1));
+        last_iterations_ = iterations / -std::log10(tolerance);
         if (first_iterations_ == 0.)
           first_iterations_ = last_iterations_;
       }
