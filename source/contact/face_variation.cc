@@ -8,11 +8,12 @@
 
 namespace Nodus
 {
-  FaceVariation::FaceVariation(const ContactGeometry    &geometry,
-                               const VariationSources   &sources,
-                               const AveragedJump::Face &face,
-                               const std::vector<Point> &measure,
-                               const bool                current)
+  FaceVariation::FaceVariation(const ContactGeometry                             &geometry,
+                               const VariationSources                            &sources,
+                               const AveragedJump::Face                          &face,
+                               const std::vector<Point>                          &measure,
+                               const bool                                         current,
+                               const std::optional<ContactPairParameters::Normal> normals)
       : all_sources_(sources)
       , face_(face)
       , measure_(measure)
@@ -25,6 +26,8 @@ namespace Nodus
       , plain_(part_ == 1. && slave_.face(face.face).basis.empty())
       , n_(slave_.face(face.face).nodes.size())
   {
+    if (normals)
+      normals_.emplace(geometry, sources, face.pair, face.face, *normals);
     number_nodes();
     const unsigned int m = slave_.face(face.face).slaves.size(), size = 3 * nodes_.size();
     n_columns_ = nodes_.size() + 7;
@@ -217,20 +220,17 @@ namespace Nodus
       }
     add_products(phi, d_phi, weight, phi_.value, n_mass);
     add_parts(point, phi, weight, phi_.parts);
-    if (part_ < 1.)
+    if (part_ < 1. || normals_)
     {
-      const unsigned int degree = slave_.degree();
-      const Nodal        hat    = of_slaves(AveragedJump::hats(degree, point.xi, point.eta));
-      constexpr double   step   = 1e-6; // they are bilinear
-      const auto         slope  = [&](const double dx, const double dy) -> Nodal
+      const auto [hat, d_xi, d_eta] = hats(point);
+      const Nodal d_hat[2]          = {d_xi, d_eta};
+      if (part_ < 1.)
       {
-        return (of_slaves(AveragedJump::hats(degree, point.xi + dx, point.eta + dy)) -
-                of_slaves(AveragedJump::hats(degree, point.xi - dx, point.eta - dy))) /
-               (2. * step);
-      };
-      const Nodal d_hat[2] = {slope(step, 0.), slope(0., step)};
-      add_products(hat, d_hat, weight, hat_.value, n_mass + m * batch_.fields.size());
-      add_parts(point, hat, weight, hat_.parts);
+        add_products(hat, d_hat, weight, hat_.value, n_mass + m * batch_.fields.size());
+        add_parts(point, hat, weight, hat_.parts);
+      }
+      if (normals_)
+        add_normals(point, weight, hat, d_hat, gradient);
     }
     ++batch_.n_points;
   }

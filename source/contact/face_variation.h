@@ -2,11 +2,12 @@
 #define nodus_contact_face_variation_h
 
 #include "contact/averaged_jump.h"
-#include "contact/variation_sources.h"
+#include "contact/mean_normals.h"
 
 #include <Eigen/Dense>
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace Nodus
@@ -20,19 +21,20 @@ namespace Nodus
   /// - points that smoothing shifts along the surfaces as these bend, which would couple every force with two rings of
   ///   nodes on both sides (the offsets themselves are in, by parts());
   /// - points of a fixed rule that fade out beyond the rim: where the rim is that of rigid triangles, and the change of
-  ///   the normal and the size of the master face there;
-  /// - normals that are averaged over the face (AveragedJump::Row::normal).
+  ///   the normal and the size of the master face there.
   class FaceVariation
   {
   public:
     using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-    /// @p measure: positions that areas are of; @p current: these are those of the geometry.
-    FaceVariation(const ContactGeometry    &geometry,
-                  const VariationSources   &sources,
-                  const AveragedJump::Face &face,
-                  const std::vector<Point> &measure,
-                  bool                      current);
+    /// @p measure: positions that areas are of; @p current: these are those of the geometry; @p normals: kind of those
+    /// that are wanted, too.
+    FaceVariation(const ContactGeometry                       &geometry,
+                  const VariationSources                      &sources,
+                  const AveragedJump::Face                    &face,
+                  const std::vector<Point>                    &measure,
+                  bool                                         current,
+                  std::optional<ContactPairParameters::Normal> normals);
 
     /// Nodes with a weight, and that derivatives are with respect to: of the face, then those of the master or of what
     /// carries it.
@@ -69,6 +71,12 @@ namespace Nodus
       return n_ + 4;
     }
 
+    /// That were wanted.
+    const MeanNormals &normals() const
+    {
+      return *normals_;
+    }
+
     /// Sources that are no nodes: the offset in the row of slave node @p a follows part @p i with this weight.
     const std::vector<unsigned int> &parts() const
     {
@@ -85,10 +93,10 @@ namespace Nodus
     using Row                          = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, max_local>;
     using Row2                         = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor, 2, max_local>;
     using Gradient    = Eigen::Matrix<double, n_coordinates, Eigen::Dynamic, Eigen::RowMajor, n_coordinates, max_local>;
-    using AnyGradient = Eigen::Matrix<double, n_coordinates, Eigen::Dynamic, Eigen::RowMajor>;
+    using AnyGradient = MeanNormals::Gradient;
     template <int columns>
     using FixedGradient = Eigen::Matrix<double, n_coordinates, columns, Eigen::RowMajor>;
-    using Nodal         = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 9, 1>;
+    using Nodal         = MeanNormals::Nodal;
 
     /// Nodes that move points with the same master face, slave nodes first: their places in nodes_.
     struct Local
@@ -139,7 +147,14 @@ namespace Nodus
     void add_vector_field(unsigned int column, const Vector3 &value, const Vector3 *d);
     void add_parts(const MortarPoint &point, const Nodal &test, double weight, Matrix &sum) const;
     void add_products(const Nodal &test, const Nodal *d_test, double weight, Matrix &value, unsigned int row);
-    void flush();
+    /// Bilinear ones of the slave nodes, and their slopes.
+    std::array<Nodal, 3> hats(const MortarPoint &point) const;
+    void                 add_normals(const MortarPoint                   &point,
+                                     double                               weight,
+                                     const Nodal                         &hat,
+                                     const Nodal                         *d_hat,
+                                     const Eigen::Ref<const AnyGradient> &gradient);
+    void                 flush();
     template <int columns>
     FixedGradient<columns> segment_gradient(const SegmentTrace::Polygon &polygon,
                                             const SegmentTrace::Place   &place,
@@ -154,23 +169,24 @@ namespace Nodus
     void    finish_partly(const Matrix &C, const Matrix &parts);
     Nodal   of_slaves(const std::array<double, 9> &nodal) const;
 
-    const VariationSources   &all_sources_;
-    const AveragedJump::Face &face_;
-    const std::vector<Point> &measure_;
-    const bool                current_;
-    const SurfaceGeometry    &slave_, &master_;
-    const MasterSearch       &search_;
-    const RigidSurface *const rigid_;
-    const double              part_;
-    const bool                plain_; ///< dual functions alone, no hanging node: the slave part is the node itself
-    const unsigned int        n_;     ///< nodes of the face
-    std::vector<unsigned int> nodes_, parts_, master_faces_;
-    unsigned int              n_columns_ = 0, first_ = 0; ///< first_ that the points contribute to
-    Local                     local_;
-    Batch                     batch_;
-    Integrals                 mass_, phi_, hat_, exact_; ///< of phi phi^T, of columns times phi and hats, of phi
-    CoverageRates             d_coverage_;
-    Matrix                    part_weight_, result_;
+    const VariationSources    &all_sources_;
+    const AveragedJump::Face  &face_;
+    const std::vector<Point>  &measure_;
+    const bool                 current_;
+    const SurfaceGeometry     &slave_, &master_;
+    const MasterSearch        &search_;
+    const RigidSurface *const  rigid_;
+    const double               part_;
+    const bool                 plain_; ///< dual functions alone, no hanging node: the slave part is the node itself
+    const unsigned int         n_;     ///< nodes of the face
+    std::vector<unsigned int>  nodes_, parts_, master_faces_;
+    unsigned int               n_columns_ = 0, first_ = 0; ///< first_ that the points contribute to
+    Local                      local_;
+    Batch                      batch_;
+    Integrals                  mass_, phi_, hat_, exact_; ///< of phi phi^T, of columns times phi and hats, of phi
+    CoverageRates              d_coverage_;
+    Matrix                     part_weight_, result_;
+    std::optional<MeanNormals> normals_;
   };
 } // namespace Nodus
 

@@ -243,6 +243,26 @@ namespace Nodus
     return result;
   }
 
+  std::array<FaceVariation::Nodal, 3> FaceVariation::hats(const MortarPoint &point) const
+  {
+    constexpr double step = 1e-6; // they are bilinear
+    const auto       at   = [&](const double dx, const double dy) -> Nodal
+    { return of_slaves(AveragedJump::hats(slave_.degree(), point.xi + dx, point.eta + dy)); };
+    return {{at(0., 0.), (at(step, 0.) - at(-step, 0.)) / (2. * step), (at(0., step) - at(0., -step)) / (2. * step)}};
+  }
+
+  void FaceVariation::add_normals(const MortarPoint                   &point,
+                                  const double                         weight,
+                                  const Nodal                         &hat,
+                                  const Nodal                         *d_hat,
+                                  const Eigen::Ref<const AnyGradient> &gradient)
+  {
+    std::vector<unsigned int> nodes;
+    for (const unsigned int place : local_.place)
+      nodes.push_back(nodes_[place]);
+    normals_->add(point, weight, hat, d_hat, gradient, nodes);
+  }
+
   FaceVariation::Row
   FaceVariation::fixed_element_gradient(const FaceShape &shape, const double xi, const double eta) const
   {

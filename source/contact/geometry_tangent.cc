@@ -78,7 +78,8 @@ namespace Nodus
       variation.node(e->node);
       variation.column(e->node);
     }
-    const std::vector<NodeDerivative> normal = normal_derivative(site);
+    const std::vector<NodeDerivative> normal =
+        has_mean_normal(site) ? mean_normal_derivative(site, faces) : normal_derivative(site);
     for (const NodeDerivative &d : normal)
       variation.column(d.node);
     if (averages(site))
@@ -380,16 +381,18 @@ namespace Nodus
 
   void GeometryTangent::add(const ContactState &state, const ContactResidual &residual, LinearSystem &system) const
   {
-    std::vector<char> active(surfaces_.n_sites(), 0);
+    using Wanted = VariedFaces::Wanted;
+    std::vector<Wanted> active(surfaces_.n_sites(), Wanted::nothing);
     for (unsigned int s = 0; s < active.size(); ++s)
-      active[s] = surfaces_.is_owned(s) && pairing_[s].found && residual.jump[s].norm_square() > 0. &&
-                  (averages(s) || geometry_.rigid[surfaces_.pair(s)] != nullptr || pairing_[s].master.found());
+      if (surfaces_.is_owned(s) && pairing_[s].found && residual.jump[s].norm_square() > 0. &&
+          (averages(s) || geometry_.rigid[surfaces_.pair(s)] != nullptr || pairing_[s].master.found()))
+        active[s] = has_mean_normal(s) ? Wanted::row_and_normal : Wanted::row;
     const bool        follows = !system.symmetric;
     VariedFaces       faces(pairs_, surfaces_, geometry_, averaged_, sources_, active);
     SiteVariation     variation(surfaces_.nodes().size(), sources_.size());
     GeometryCouplings couplings(surfaces_, sources_);
     for (unsigned int s = 0; s < active.size(); ++s)
-      if (active[s])
+      if (active[s] != Wanted::nothing)
         vary(s, state, residual, follows, faces, variation, couplings);
     couplings.write(state, system);
   }

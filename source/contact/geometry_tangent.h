@@ -26,7 +26,7 @@ namespace Nodus
   ///
   /// Theory section 18 lists what is left out, with its sizes: how smoothing shifts points along the surfaces
   /// (FaceVariation), areas but for the averaged scheme, friction laws of points with several nodes and of integration
-  /// points, normals averaged over faces, sites without force.
+  /// points, sites without force.
   class GeometryTangent
   {
   public:
@@ -65,7 +65,7 @@ namespace Nodus
     std::array<Motion, 2>       projection_motion(unsigned int site) const;
     void                        add_slave_motion(unsigned int site, const Vector3 &dual, Motion &motion) const;
     std::vector<NodeDerivative> normal_derivative(unsigned int site) const;
-    std::vector<NodeDerivative> facet_normal_derivative(unsigned int pair, const Projection &master, double part) const;
+    std::vector<NodeDerivative> mean_normal_derivative(unsigned int site, VariedFaces &faces) const;
     std::vector<NodeDerivative> slave_normal_derivative(unsigned int site) const;
     std::vector<NodeDerivative> rigid_normal_derivative(unsigned int site) const;
     void add_projection(unsigned int site, const std::array<Motion, 2> &motion, SiteVariation &variation) const;
@@ -98,6 +98,12 @@ namespace Nodus
     bool averages(const unsigned int site) const
     {
       return pairs_[surfaces_.pair(site)].scheme == ContactPairParameters::Scheme::averaged;
+    }
+
+    /// Its normal is the mean over its surface.
+    bool has_mean_normal(const unsigned int site) const
+    {
+      return averages(site) && geometry_.rigid[surfaces_.pair(site)] == nullptr && !pairing_[site].master.found();
     }
 
     const std::vector<ContactPairParameters>                 &pairs_;

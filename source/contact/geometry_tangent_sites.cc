@@ -1,4 +1,6 @@
 #include "contact/geometry_tangent.h"
+#include "contact/master_normal.h"
+#include "contact/varied_faces.h"
 
 #include <algorithm>
 
@@ -223,37 +225,6 @@ namespace Nodus
     return derivative;
   }
 
-  /// Of a facet with @p part of the averaged normal (eq. P5), at fixed local coordinates.
-  std::vector<NodeDerivative>
-  GeometryTangent::facet_normal_derivative(const unsigned int pair, const Projection &master, const double part) const
-  {
-    const auto [f, xi, eta]        = master;
-    const SurfaceGeometry &surface = geometry_.master[pair];
-    const FaceShape        shape(2, xi, eta);
-    const FaceGeometry     x          = surface.at(f, xi, eta);
-    const auto             d_xi       = SurfaceGeometry::offset_functions(shape.d_xi),
-               d_eta                  = SurfaceGeometry::offset_functions(shape.d_eta);
-    const Matrix3               cross = surface.face(f).orientation * unit_derivative(x.area_vector());
-    std::vector<NodeDerivative> derivative;
-    surface.normal_derivative(f, xi, eta, derivative);
-    for (unsigned int i = 0; i < VariationSources::n_moving(surface, f); ++i)
-      Nodus::add(derivative,
-                 sources_.part(pair, true, f, i),
-                 cross * (d_eta[i] * cross_matrix(x.d_xi) - d_xi[i] * cross_matrix(x.d_eta)));
-    if (part == 0.)
-      return derivative;
-
-    const Matrix3 to_unit =
-        unit_derivative(part * surface.averaged_normal(f, xi, eta) + (1. - part) * surface.normal(f, xi, eta));
-    for (NodeDerivative &d : derivative)
-      d.value = (1. - part) * to_unit * d.value;
-    std::vector<NodeDerivative> averaged;
-    surface.averaged_normal_derivative(f, xi, eta, averaged);
-    for (const NodeDerivative &d : averaged)
-      Nodus::add(derivative, d.node, part * to_unit * d.value);
-    return derivative;
-  }
-
   std::vector<NodeDerivative> GeometryTangent::normal_derivative(const unsigned int site) const
   {
     using Normal                       = ContactPairParameters::Normal;
@@ -268,32 +239,30 @@ namespace Nodus
     if (rigid)
       return rigid_normal_derivative(site);
 
-    const auto [f, xi, eta]        = master;
-    const SurfaceGeometry &surface = geometry_.master[p];
-    const auto            &rim     = geometry_.search[p].rim(f);
-    const double           part = pairs_[p].normal == Normal::averaged ? 1. : SurfaceGeometry::edge_part(xi, eta, rim);
-    if (part == 1.)
-      surface.averaged_normal_derivative(f, xi, eta, derivative);
-    else
-      derivative = facet_normal_derivative(p, master, part);
-    for (NodeDerivative &d : derivative)
-      d.value = -d.value;
-
+    const MasterNormal normal(geometry_, sources_, p, pairs_[p].normal);
+    derivative        = normal.derivative(master);
     const auto motion = projection_motion(site);
+    const auto slopes = normal.slopes(master);
     for (unsigned int alpha = 0; alpha < 2; ++alpha)
-    {
-      constexpr double step = 1e-5; // the normal is smooth in the face
-      const double     dx = alpha == 0 ? step : 0., dy = alpha == 1 ? step : 0.;
-      const auto       normal = [&](const double sign)
-      {
-        const double x = master.xi + sign * dx, y = master.eta + sign * dy;
-        return pairs_[p].normal == Normal::averaged ? surface.averaged_normal(master.face, x, y)
-                                                    : surface.facet_normal(master.face, x, y, rim);
-      };
-      const Vector3 slope = (normal(-1.) - normal(1.)) / (2. * step);
       for (const auto &[source, value] : motion[alpha])
-        Nodus::add(derivative, source, dealii::outer_product(slope, value));
-    }
+        Nodus::add(derivative, source, dealii::outer_product(slopes[alpha], value));
+    return derivative;
+  }
+
+  /// Without a projection of its own the site has the mean over its surface (eq. J3).
+  std::vector<NodeDerivative> GeometryTangent::mean_normal_derivative(const unsigned int site, VariedFaces &faces) const
+  {
+    Vector3                     sum;
+    std::vector<NodeDerivative> derivative;
+    faces.for_each(site,
+                   [&](const FaceVariation &face, const unsigned int a, const double part)
+                   {
+                     sum += part * face.normals().value(a);
+                     face.normals().add_derivative(a, part, derivative);
+                   });
+    const Matrix3 to_unit = unit_derivative(sum);
+    for (NodeDerivative &d : derivative)
+      d.value = to_unit * d.value;
     return derivative;
   }
 } // namespace Nodus

@@ -13,13 +13,20 @@ namespace Nodus
   class VariedFaces
   {
   public:
-    /// @p active: per site; the faces around these are wanted.
+    /// Of a site.
+    enum class Wanted : char
+    {
+      nothing,
+      row,
+      row_and_normal ///< the mean over the faces
+    };
+    /// @p wanted: per site.
     VariedFaces(const std::vector<ContactPairParameters> &pairs,
                 const ContactSurfaces                    &surfaces,
                 const ContactGeometry                    &geometry,
                 const AveragedJump                       &averaged,
                 const VariationSources                   &sources,
-                const std::vector<char>                  &active);
+                const std::vector<Wanted>                &wanted);
 
     /// Calls f(variation, number of a slave node of the face, part of it) for what the faces around a site add to its
     /// row.
@@ -40,14 +47,15 @@ namespace Nodus
     struct Around
     {
       const AveragedJump::Face      *face;
-      unsigned int                   wanted; ///< by sites that are not done
+      unsigned int                   n_sites; ///< that are not done
+      bool                           with_normals;
       std::unique_ptr<FaceVariation> variation;
     };
 
     const FaceVariation &variation(Around &around) const;
-    void                 note(const AveragedJump::Face &face, const std::vector<char> &active);
+    void                 note(const AveragedJump::Face &face, const std::vector<Wanted> &wanted);
     /// Faces of other ranks at sites of this one: their masters are here, too.
-    void find_foreign(const std::vector<char> &active);
+    void find_foreign(const std::vector<Wanted> &wanted);
 
     const std::vector<ContactPairParameters>        &pairs_;
     const ContactSurfaces                           &surfaces_;

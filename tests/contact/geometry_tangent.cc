@@ -261,10 +261,9 @@ namespace
     fixture.pair_at(state.x);
     for (unsigned int k = 0; k < state.lambda.size(); ++k)
     {
-      const bool   stick = kind.friction == Friction::stick || kind.friction == Friction::tied;
-      const double f     = kind.friction == Friction::none ? 0. : -0.3 * (1. + 0.3 * random(generator));
-      // a node without a projection of its own has a normal averaged over its faces, whose variation is left out
-      const bool closed = fixture.pairing[k].found && (kind.shape != Shape::mesh || fixture.pairing[k].master.found());
+      const bool   stick  = kind.friction == Friction::stick || kind.friction == Friction::tied;
+      const double f      = kind.friction == Friction::none ? 0. : -0.3 * (1. + 0.3 * random(generator));
+      const bool   closed = fixture.pairing[k].found;
       fixture.status->assign(k, closed, stick, f);
       state.lambda[k] = closed ? -(1. + 0.5 * random(generator)) : 0.;
       for (double &component : state.Lambda[k])
@@ -428,6 +427,16 @@ namespace
             {
               k.overhang = overhang;
               k.friction = Friction::stick;
+            });
+      // a node over the rim takes the mean of what its points have
+      for (const auto &[normal, name] : {std::make_pair(Normal::master_facet, "master"), {Normal::slave, "slave"}})
+        add(base,
+            std::string(", overhang, ") + name + " normals, slip with the pressure",
+            [normal = normal](Kind &k)
+            {
+              k.normal   = normal;
+              k.overhang = 0.3;
+              k.friction = Friction::slip_coupled;
             });
       add(base, ", one surface", [](Kind &k) { k.apart = 0.3; });
       // a row of points that fades out (eq. J7)
