@@ -8,12 +8,14 @@ import subprocess
 import numpy as np
 
 ELEMENTS = {1: "C3D8", 2: "C3D20R"}
+SPRING = 1e4  # of nodes that cannot be fixed, in Young's moduli times a unit of length
 
 
 class Deck:
-    """The text of a deck. stiffness: of the contact, pressure over overlap; stick: shear over slip in sticking contact."""
+    """The text of a deck. stiffness: of the contact, pressure over overlap; stick: shear over slip in sticking contact; without them
+    contact is hard, by mortar."""
 
-    def __init__(self, case, stiffness, stick):
+    def __init__(self, case, stiffness=None, stick=None):
         self.case, self.stiffness, self.stick = case, stiffness, stick
         self.lines = []
         self._mesh()
@@ -45,15 +47,35 @@ class Deck:
         for number, (slave, master, friction) in self.case.pairs().items():
             for side, faces in (("SLAVE", slave), ("MASTER", master)):
                 self.lines += [f"*SURFACE, NAME={side}{number}, TYPE=ELEMENT", *(f"{e}, S{s}" for e, s in faces)]
-            self.lines += [f"*SURFACE INTERACTION, NAME=CONTACT{number}", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
-                           f"{self.stiffness:.8g}"]  # fmt: skip
+            self.lines.append(f"*SURFACE INTERACTION, NAME=CONTACT{number}")
+            if self.stiffness:
+                self.lines += ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{self.stiffness:.8g}"]
             if friction:
-                self.lines += ["*FRICTION", f"{friction}, {self.stick:.8g}"]
-            self.lines += [f"*CONTACT PAIR, INTERACTION=CONTACT{number}, TYPE=SURFACE TO SURFACE", f"SLAVE{number}, MASTER{number}"]
+                self.lines += ["*FRICTION", f"{friction}, {self.stick or 1e9:.8g}"]
+            kind = "SURFACE TO SURFACE" if self.stiffness else "MORTAR"
+            self.lines += [f"*CONTACT PAIR, INTERACTION=CONTACT{number}, TYPE={kind}", f"SLAVE{number}, MASTER{number}"]
+
+    def _springs(self):
+        """Mortar contact is singular at slave nodes with more than one fixed component: springs hold the others. Returns them as (node, axis)."""
+        if self.stiffness:
+            return set()
+        first, found = {}, set()
+        slaves = {node for slave, _, _ in self.case.pairs().values() for node in self.case.nodes_of(slave)}
+        for faces, components in self.case.conditions().values():
+            for node in slaves.intersection(self.case.nodes_of(faces)):
+                found |= {(node, c + 1) for c, history in components if first.setdefault(node, c) != c and not history.any()}
+        stiffness, number = SPRING * max(modulus for _, modulus, _ in self.case.laws().values()), len(self.case.elements)
+        for axis in sorted({axis for _, axis in found}):
+            self.lines.append(f"*ELEMENT, TYPE=SPRING1, ELSET=SPRINGS{axis}")
+            for node in sorted(node for node, other in found if other == axis):
+                number += 1
+                self.lines.append(f"{number}, {node}")
+            self.lines += [f"*SPRING, ELSET=SPRINGS{axis}", f"{axis}", f"{stiffness:.6e}"]
+        return found
 
     def _steps(self):
         """One for each interval; what changes is a table over the time at the ends of nodus's increments."""
-        fixed, moved, prints = ["*BOUNDARY"], [], []
+        fixed, moved, prints, springs = ["*BOUNDARY"], [], [], self._springs()
         for number, (faces, components) in self.case.conditions().items():
             name = f"CONDITION{number}"
             self.lines += [f"*NSET, NSET={name}"] + [f"{n}," for n in self.case.nodes_of(faces)]
@@ -61,7 +83,11 @@ class Deck:
             for component, history in components:
                 axis = component + 1
                 if not history.any():
-                    fixed.append(f"{name}, {axis}, {axis}")
+                    held = [node for node in self.case.nodes_of(faces) if (node, axis) in springs]
+                    if held:
+                        fixed += [f"{node}, {axis}, {axis}" for node in self.case.nodes_of(faces) if (node, axis) not in springs]
+                    else:
+                        fixed.append(f"{name}, {axis}, {axis}")
                     continue
                 self.lines.append(f"*AMPLITUDE, NAME=A{number}{axis}, TIME=TOTAL TIME")
                 self.lines += [f"{t:.12g}, {value:.12g}" for t, value in zip(self.case.times(), history)]
@@ -85,7 +111,7 @@ def _forces(path):
 
 
 def run(case, stiffness, stick, folder, time_limit=3600):
-    """Writes and runs the deck in a folder, on one thread. Returns {"finished", "time", "increments", "iterations", "cut-backs",
+    """Writes and runs the deck in a folder, on one thread; without stiffness by mortar. Returns {"finished", "time", "increments", "iterations", "cut-backs",
     "cpu" s, "memory" MiB, "forces": condition -> rows (time, x, y, z)}; deck.log has what CalculiX says."""
     os.makedirs(folder, exist_ok=True)
     deck = Deck(case, stiffness, stick)

@@ -30,8 +30,8 @@ def run(case, augmentation, release, folder, time_limit=3600):
     content = {
         "points": case.points.tolist(),
         "bodies": {str(b): {"elements": corners[case.body == b].tolist(), "law": law} for b, law in case.laws().items()},
-        "pairs": [[_nodes(case, slave), _nodes(case, master), friction] for slave, master, friction in case.pairs().values()],
-        "conditions": {str(number): [_nodes(case, faces), [[c, history.tolist()] for c, history in components]]
+        "pairs": [[case.corners_of(slave), case.corners_of(master), friction] for slave, master, friction in case.pairs().values()],
+        "conditions": {str(number): [case.corners_of(faces), [[c, history.tolist()] for c, history in components]]
                        for number, (faces, components) in case.conditions().items()},
         "times": case.times().tolist(), "augmentation": augmentation, "release": release,
     }  # fmt: skip
@@ -45,13 +45,6 @@ def run(case, augmentation, release, folder, time_limit=3600):
         result = json.load(file)
     result["forces"] = {int(number): np.array(rows) for number, rows in result["forces"].items()}
     return {**result, "cpu": usage.ru_utime + usage.ru_stime, "memory": usage.ru_maxrss / 1024}
-
-
-def _nodes(case, faces):
-    """Body and corners of each element face."""
-    from plain_case import FACES
-
-    return [[int(case.body[e - 1]), (case.elements[e - 1][list(FACES[s - 1])] - 1).tolist()] for e, s in faces]
 
 
 class Solid:

@@ -1,13 +1,16 @@
 #!/usr/bin/python3
-"""nodus beside CalculiX and GetFEM on cases of the gallery: the same mesh, elements and law, one process and one thread each.
+"""nodus beside CalculiX, GetFEM and Kratos on cases of the gallery, prm/ironing.prm and the comparison case hertz: the same mesh, elements
+and law, one process and one thread each.
 
-    peers.py [--time-limit S] [CASE ...]    (default: all)
+    peers.py [--time-limit S] [--programs PROGRAM,...] [CASE ...]    (default: all)
 
-Writes <case>.csv and ../../doc/gallery/<case>_peers.png (forces over the time) and peers.md; cases that are not named keep
-their rows of peers.json. Needs ccx (Debian: calculix-ccx) and python3-getfem. NODUS names the program, CCX that of CalculiX.
+Writes <case>.csv and ../../doc/gallery/<case>_peers.png (forces over the time) and peers.md; cases that are not named, and programs that are
+not, keep their rows of peers.json. Needs ccx (Debian: calculix-ccx), python3-getfem and, as KRATOS_PYTHON, a Python that has Kratos
+(kratos_peer.py). NODUS names the program, CCX that of CalculiX.
 """
 
 import argparse
+import csv
 import json
 import os
 import sys
@@ -16,9 +19,13 @@ import numpy as np
 
 import calculix
 import getfem_peer
+import kratos_peer
 from plain_case import HERE, PlainCase, common
 
-GALLERY = os.path.join(common.ROOT, "prm", "gallery")
+sys.path.insert(0, os.path.join(common.FOLDER, "scaling"))
+import hertz_case  # noqa: E402
+
+PRM = os.path.join(common.ROOT, "prm")
 MERGED = {f"{loop} loop/Mode": "newton" for loop in ("Geometry", "Threshold", "Status")}
 
 
@@ -31,13 +38,28 @@ def _cells(bodies):
     return sets
 
 
+def _hertz(n):
+    return hertz_case.write(n, os.path.join(common.SCRATCH, "hertz"))
+
+
+def _ring(n):
+    """prm/ironing.prm, which has n = 4."""
+    return {**_cells(2), "Body 1/Generator arguments": f"{14 * n},{5 * n // 2},1 : -1.5,-1.5,0 : 5.5,0,0.2 : true",
+            "Body 2/Generator arguments": f"0.2 : 0.6 : 1 : {9 * n // 2} : 1"}  # fmt: skip
+
+
+ONE = {"Load stepping/Interval ends": "1", "Load stepping/Increments": "1"}
 # file, keys, condition whose forces are compared, contact stiffness of CalculiX in the soft body's modulus over length: as a user, as an expert;
 # how far GetFEM looks for the other surface: less than the thickness of a body
 CASES = {
-    "ironing_3d": ("ironing_3d.prm", {**_cells(2), "Body 1/Generator arguments": "36, 8, 8 : 0,0,0 : 9,2,3 : true",
-                                      "Load stepping/Increments": "10, 40"}, 4, (100, 1000), 0.15),
-    "ironing": ("ironing.prm", _cells(2), 4, (10, 100), 1.0),
-    "press_fit": ("press_fit.prm", _cells(2), 2, (1, 10), 100.0),
+    "hertz_12": (_hertz(12), ONE, 4, (50, 1000), 0.2),
+    "hertz_24": (_hertz(24), ONE, 4, (50,), 0.2),
+    "ironing_ring": (os.path.join(PRM, "ironing.prm"), _ring(6), 4, (100, 1000), 0.15),
+    "ironing_3d": (os.path.join(PRM, "gallery", "ironing_3d.prm"),
+                   {**_cells(2), "Body 1/Generator arguments": "36, 8, 8 : 0,0,0 : 9,2,3 : true", "Load stepping/Increments": "10, 40"},
+                   4, (100, 1000), 0.15),
+    "ironing": (os.path.join(PRM, "gallery", "ironing.prm"), _cells(2), 4, (10, 100), 1.0),
+    "press_fit": (os.path.join(PRM, "gallery", "press_fit.prm"), _cells(2), 2, (1, 10), 100.0),
 }  # fmt: skip
 HEADER = ["case", "unknowns", "program", "to t =", "increments", "cut back", "Newton iterations", "CPU s", "/ nodus", "peak MiB",
           "largest difference of forces until there"]  # fmt: skip
@@ -75,12 +97,22 @@ def write_csv(name, found):
         file.write("\n".join(lines) + "\n")
 
 
+def read_csv(name):
+    """program -> rows of its forces, of earlier runs."""
+    found, path = {}, os.path.join(HERE, name + ".csv")
+    if os.path.exists(path):
+        with open(path, encoding="utf-8") as file:
+            for program, *values in list(csv.reader(file))[2:]:
+                found.setdefault(program, []).append(list(map(float, values)))
+    return found
+
+
 def plot(name, found, columns):
     """The forces that the condition moves against."""
     figure, _ = common.figure(5 * len(columns), 4)
     figure.clear()
     for axis, column in zip(figure.subplots(1, len(columns), squeeze=False)[0], columns):
-        for (program, r), style in zip(found.items(), ("-", "o", "x", "+")):
+        for (program, r), style in zip(found.items(), ("-", "o", "x", "+", "^", "v", "s")):
             forces = np.array(r["forces"])
             axis.plot(forces[:, 0], forces[:, column], style, ms=4, mfc="none", label=program)
         axis.set_xlabel("time")
@@ -89,28 +121,46 @@ def plot(name, found, columns):
     figure.savefig(os.path.join(common.ROOT, "contrib", "doc", "gallery", name + "_peers.png"), dpi=100)
 
 
-def measure(name, time_limit):
-    file, sets, condition, stiffnesses, release = CASES[name]
-    path = os.path.join(GALLERY, file)
-    found = {"nodus": run_nodus(name, path, sets, condition)}
+def peers(case, stiffnesses, release, folder, time_limit):
+    """label -> a function that runs it."""
+    soft = min(modulus for _, modulus, _ in case.laws().values())
+    found = {
+        f"CalculiX, contact stiffness {factor} E": lambda factor=factor: calculix.run(
+            case, factor * soft, 0.1 * factor * soft, f"{folder}_ccx_{factor}", time_limit)
+        for factor in stiffnesses
+    }  # fmt: skip
+    found["CalculiX mortar"] = lambda: calculix.run(case, None, None, folder + "_ccx_mortar", time_limit)
+    found["GetFEM"] = lambda: getfem_peer.run(case, soft, release, folder + "_getfem", time_limit)
+    found["Kratos direct"] = lambda: kratos_peer.run(case, "direct", folder + "_kratos", time_limit)
+    found["Kratos AMG"] = lambda: kratos_peer.run(case, "AMG", folder + "_kratos_amg", time_limit)
+    return found
+
+
+def measure(name, programs, time_limit, before):
+    """before: what earlier runs found, of which programs that are not asked for remain."""
+    path, sets, condition, stiffnesses, release = CASES[name]
     folder = os.path.join(common.SCRATCH, "peers", name)
-    case = PlainCase(path, sets, folder)
+    case, forces = PlainCase(path, sets, folder), read_csv(name)
+    found = {"nodus": run_nodus(name, path, sets, condition)}
     found["nodus"]["unknowns"] = case.n_unknowns
-    softest = min(modulus for _, modulus, _ in case.laws().values())
-    for factor in stiffnesses:
-        found[f"CalculiX, contact stiffness {factor} E"] = calculix.run(case, factor * softest, 0.1 * factor * softest, f"{folder}_ccx_{factor}", time_limit)
-    found["GetFEM"] = getfem_peer.run(case, softest, release, f"{folder}_getfem", time_limit)
-    for program, r in found.items():
-        if program != "nodus":
-            r["forces"] = np.asarray(r["forces"].get(condition, [])).tolist()
+    for program, run in peers(case, stiffnesses, release, folder, time_limit).items():
+        if not any(program.startswith(begin) for begin in programs):
+            if program in before:
+                found[program] = {**before[program], "forces": forces.get(program, [])}
+            continue
+        r = found[program] = run()
+        r["forces"] = np.asarray(r["forces"].get(condition, [])).tolist()
         print(f"  {name}, {program}: to t = {r['time']:g}, {r['cpu']:.1f} CPU s", flush=True)
-    write_csv(name, found)
     columns = moved(case.conditions()[condition])
-    plot(name, found, columns)
-    forces = {program: r.pop("forces") for program, r in found.items()}
+    ours = found["nodus"]["forces"]
     for program, r in found.items():
-        if program != "nodus" and forces[program] and forces[program][-1][0] >= forces["nodus"][0][0]:
-            r["apart"] = difference(forces["nodus"], forces[program], columns)
+        if program != "nodus" and r["forces"] and r["forces"][-1][0] >= ours[0][0]:
+            r["apart"] = difference(ours, r["forces"], columns)
+    write_csv(name, found)
+    if len(ours) > 1:
+        plot(name, {program: r for program, r in found.items() if r["forces"]}, columns)
+    for r in found.values():
+        del r["forces"]
     return found
 
 
@@ -127,6 +177,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="*", metavar="CASE", help=", ".join(CASES))
     parser.add_argument("--time-limit", type=int, default=1800, help="CPU seconds of a run of the others")
+    parser.add_argument("--programs", default="CalculiX,GetFEM,Kratos", help="beginnings of the others' names (default: %(default)s)")
     options = parser.parse_args()
     kept, store = {}, os.path.join(HERE, "peers.json")
     if os.path.exists(store):
@@ -135,7 +186,7 @@ def main():
     for name in options.cases or CASES:
         if name not in CASES:
             sys.exit(f"peers.py: there is no case {name}; there are {', '.join(CASES)}")
-        kept[name] = measure(name, options.time_limit)
+        kept[name] = measure(name, options.programs.split(","), options.time_limit, kept.get(name, {}))
         with open(store, "w", encoding="utf-8") as file:
             json.dump(kept, file, indent=1)
     page = os.path.join(HERE, "peers.md")

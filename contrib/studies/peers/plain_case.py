@@ -102,6 +102,10 @@ class PlainCase:
                 nodes.update(element[8 + i] for i, edge in enumerate(EDGES) if set(edge) <= set(corners))
         return sorted(nodes)
 
+    def corners_of(self, faces):
+        """Body and corners, numbers from 0 on, of element faces."""
+        return [[int(self.body[e - 1]), (self.elements[e - 1][list(FACES[s - 1])] - 1).tolist()] for e, s in faces]
+
     def _role(self, begin):
         found = [faces for role, faces in self._faces.items() if re.match(begin, role)]
         if len(found) != 1:
