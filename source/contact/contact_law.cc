@@ -264,9 +264,6 @@ namespace Nodus
         const unsigned int ia  = first + 3 * a;
         r_t(ia)                = 0.;
         r_t.segment<2>(ia + 1) = -(Wt / f.h_tau) * i.slip * i.tangent * pi_t;
-        if (f.n_nodes > 1)
-          r_t.segment<2>(ia + 1) += -W * i.stick * i.tangent * f.slip_stick +
-                                    (2. * W / f.h_tau) * i.slip * i.tangent * (f.Lambda_slip - f.pi);
       }
     }
   } // namespace
