@@ -34,7 +34,7 @@ namespace Nodus
     double       force_tolerance    = 1e-8; ///< relative to the largest nodal force
     double contact_tolerance = 1e-8; ///< gap and slip relative to the displacement of the step; friction law absolute
     bool   line_search       = false;
-    double largest_forcing_term = 1e-2; ///< relative accuracy of a correction; 0: that of the linear solver
+    double largest_forcing_term = 1e-3; ///< relative accuracy of a correction; 0: that of the linear solver
   };
 
   struct LinearSolverParameters
