@@ -264,7 +264,7 @@ namespace Nodus
         const unsigned int ia  = first + 3 * a;
         r_t(ia)                = 0.;
         r_t.segment<2>(ia + 1) = -(Wt / f.h_tau) * i.slip * i.tangent * pi_t;
-        if (f.stiffness > 0.) // regularised: the law of the point alone
+        if (f.n_nodes > 1 && f.stiffness > 0.) // regularised: a law of the point
           r_t.segment<2>(ia + 1) += (2. * W / f.h_tau) * i.slip * i.tangent * (f.Lambda_slip - f.pi);
       }
     }

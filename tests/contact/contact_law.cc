@@ -171,6 +171,22 @@ namespace
     return worst / largest;
   }
 
+  /// The factor mu lambda_s of the stick rows and mu lambda_s / h_tau of the slip rows is not derived, but for the
+  /// regularised law of points of several nodes. @p rate: of the threshold.
+  template <typename Column>
+  void leave_out_factors(const LawPoint &point, const LawSum &sum, const double rate, Column &column)
+  {
+    if (point.n_nodes > 1 && point.in_the_mean)
+      return;
+    for (unsigned int a = 0; a < point.n_nodes; ++a)
+      for (unsigned int i = 0; i < 2; ++i)
+        if (const LawNode &node = point.nodes[a]; node.status.friction && node.frame.tangent_free[i])
+        {
+          const unsigned int row = sum.first_node + 3 * a + 1 + i;
+          column[row] -= rate * (node.status.stick ? 1. : 2.) / point.threshold * sum.residual[row];
+        }
+  }
+
   /// The same of the derivative with respect to the threshold.
   double threshold_error(const LawPoint &point, const LawSum &sum)
   {
@@ -186,12 +202,7 @@ namespace
                                    if (node.frame.tangent_free[i])
                                      node.Lambda[i] *= threshold / (threshold + step);
                              });
-    // one node: the factor mu lambda_s of the stick rows and mu lambda_s / h_tau of the slip rows is not derived
-    const LawNode &node = point.nodes[0];
-    if (point.n_nodes == 1 && node.status.friction)
-      for (unsigned int i = 0; i < 2; ++i)
-        if (node.frame.tangent_free[i])
-          column[4 + i] -= (node.status.stick ? 1. : 2.) / threshold * sum.residual[4 + i];
+    leave_out_factors(point, sum, 1., column);
     double worst = 0.;
     for (unsigned int i = 0; i < sum.n_unknowns(); ++i)
       worst = std::max(worst, std::abs(sum.by_threshold[i] - column[i]));
@@ -218,13 +229,14 @@ namespace
     for (unsigned int a = 0; a < point.n_nodes; ++a)
     {
       const unsigned int j      = sum.first_node + 3 * a;
-      const auto         column = difference(point,
-                                     [&](LawPoint &p, const double step)
-                                     {
-                                       move(p, j, step);
-                                       set_threshold(p, threshold(p));
-                                     });
+      auto               column = difference(point,
+                               [&](LawPoint &p, const double step)
+                               {
+                                 move(p, j, step);
+                                 set_threshold(p, threshold(p));
+                               });
       const double       slope  = point.nodes[a].status.contact ? mu * point.nodes[a].shape : 0.;
+      leave_out_factors(point, sum, slope, column);
       for (unsigned int i = 0; i < sum.n_unknowns(); ++i)
         worst = std::max(worst, std::abs(sum.tangent(i, j) + sum.by_threshold[i] * slope - column[i]));
     }
