@@ -2,13 +2,13 @@
 
 import os
 import re
-import resource
-import subprocess
 
 import numpy as np
+from plain_case import limited
 
 ELEMENTS = {1: "C3D8", 2: "C3D20R"}
-SPRING = 1e4  # of nodes that cannot be fixed, in Young's moduli times a unit of length
+# By mortar: of nodes that cannot be fixed, and of sticking contact, in the largest Young's modulus times or over a unit of length.
+SPRING = 1e4
 
 
 class Deck:
@@ -51,9 +51,12 @@ class Deck:
             if self.stiffness:
                 self.lines += ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{self.stiffness:.8g}"]
             if friction:
-                self.lines += ["*FRICTION", f"{friction}, {self.stick or 1e9:.8g}"]
+                self.lines += ["*FRICTION", f"{friction}, {self.stick or SPRING * self._stiffest():.8g}"]
             kind = "SURFACE TO SURFACE" if self.stiffness else "MORTAR"
             self.lines += [f"*CONTACT PAIR, INTERACTION=CONTACT{number}, TYPE={kind}", f"SLAVE{number}, MASTER{number}"]
+
+    def _stiffest(self):
+        return max(modulus for _, modulus, _ in self.case.laws().values())
 
     def _springs(self):
         """Mortar contact is singular at slave nodes with more than one fixed component: springs hold the others. Returns them as (node, axis)."""
@@ -64,7 +67,7 @@ class Deck:
         for faces, components in self.case.conditions().values():
             for node in slaves.intersection(self.case.nodes_of(faces)):
                 found |= {(node, c + 1) for c, history in components if first.setdefault(node, c) != c and not history.any()}
-        stiffness, number = SPRING * max(modulus for _, modulus, _ in self.case.laws().values()), len(self.case.elements)
+        stiffness, number = SPRING * self._stiffest(), len(self.case.elements)
         for axis in sorted({axis for _, axis in found}):
             self.lines.append(f"*ELEMENT, TYPE=SPRING1, ELSET=SPRINGS{axis}")
             for node in sorted(node for node, other in found if other == axis):
@@ -83,11 +86,9 @@ class Deck:
             for component, history in components:
                 axis = component + 1
                 if not history.any():
-                    held = [node for node in self.case.nodes_of(faces) if (node, axis) in springs]
-                    if held:
-                        fixed += [f"{node}, {axis}, {axis}" for node in self.case.nodes_of(faces) if (node, axis) not in springs]
-                    else:
-                        fixed.append(f"{name}, {axis}, {axis}")
+                    nodes = self.case.nodes_of(faces)
+                    held = any((node, axis) in springs for node in nodes)
+                    fixed += [f"{node}, {axis}, {axis}" for node in nodes if (node, axis) not in springs] if held else [f"{name}, {axis}, {axis}"]
                     continue
                 self.lines.append(f"*AMPLITUDE, NAME=A{number}{axis}, TIME=TOTAL TIME")
                 self.lines += [f"{t:.12g}, {value:.12g}" for t, value in zip(self.case.times(), history)]
@@ -111,8 +112,8 @@ def _forces(path):
 
 
 def run(case, stiffness, stick, folder, time_limit=3600):
-    """Writes and runs the deck in a folder, on one thread; without stiffness by mortar. Returns {"finished", "time", "increments", "iterations", "cut-backs",
-    "cpu" s, "memory" MiB, "forces": condition -> rows (time, x, y, z)}; deck.log has what CalculiX says."""
+    """Writes and runs the deck in a folder, on one thread; without stiffness by mortar. Returns {"finished", "time", "increments",
+    "iterations", "cut-backs", "cpu" s, "memory" MiB, "forces": condition -> rows (time, x, y, z)}; deck.log has what CalculiX says."""
     os.makedirs(folder, exist_ok=True)
     deck = Deck(case, stiffness, stick)
     for name in os.listdir(folder):
@@ -120,24 +121,18 @@ def run(case, stiffness, stick, folder, time_limit=3600):
             os.remove(os.path.join(folder, name))
     with open(os.path.join(folder, "deck.inp"), "w", encoding="utf-8") as file:
         file.write(deck.text)
-    limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (time_limit, time_limit + 5))  # noqa: E731
-    with open(os.path.join(folder, "deck.log"), "w", encoding="utf-8") as log:
-        child = subprocess.Popen([os.environ.get("CCX", "ccx"), "deck"], cwd=folder, stdout=log, stderr=subprocess.STDOUT,
-                                 preexec_fn=limit)  # fmt: skip
-        _, status, usage = os.wait4(child.pid, 0)
-    child.returncode = os.waitstatus_to_exitcode(status)
+    code, use = limited([os.environ.get("CCX", "ccx"), "deck"], "deck.log", folder, time_limit)
     rows = np.loadtxt(os.path.join(folder, "deck.sta"), skiprows=2, usecols=(2, 4), dtype=str, ndmin=2)
     failed = np.char.endswith(rows[:, 0], "U")  # of the attempts
     iterations = np.loadtxt(os.path.join(folder, "deck.cvg"), skiprows=4, usecols=0, dtype=int, ndmin=1)
     with open(os.path.join(folder, "deck.log"), encoding="utf-8", errors="replace") as log:
-        finished = child.returncode == 0 and "Job finished" in log.read()
+        finished = code == 0 and "Job finished" in log.read()
     return {
         "finished": finished,
         "time": float(rows[~failed, 1][-1]) if not failed.all() else 0.0,
         "increments": int(np.count_nonzero(~failed)),
         "iterations": len(iterations),
         "cut-backs": int(np.count_nonzero(failed)),
-        "cpu": usage.ru_utime + usage.ru_stime,
-        "memory": usage.ru_maxrss / 1024,
+        **use,
         "forces": _forces(os.path.join(folder, "deck.dat")),
     }

@@ -5,9 +5,6 @@ Needs Debian's python3-getfem.
 """
 
 import json
-import os
-import resource
-import subprocess
 import sys
 
 import numpy as np
@@ -21,11 +18,10 @@ HALVINGS, ITERATIONS = 10, 30
 
 def run(case, augmentation, release, folder, time_limit=3600):
     """augmentation: in pressure; release: how far the other surface is looked for [length]. Returns what calculix.run() returns."""
-    from plain_case import Unsupported
+    from plain_case import Unsupported, solved
 
     if case.degree != 1:
         raise Unsupported("elements of degree 2")
-    os.makedirs(folder, exist_ok=True)
     corners = case.elements - 1
     content = {
         "points": case.points.tolist(),
@@ -35,16 +31,7 @@ def run(case, augmentation, release, folder, time_limit=3600):
                        for number, (faces, components) in case.conditions().items()},
         "times": case.times().tolist(), "augmentation": augmentation, "release": release,
     }  # fmt: skip
-    with open(os.path.join(folder, "case.json"), "w", encoding="utf-8") as file:
-        json.dump(content, file)
-    limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (time_limit, time_limit + 5))  # noqa: E731
-    with open(os.path.join(folder, "log"), "w", encoding="utf-8") as log:
-        child = subprocess.Popen([sys.executable, os.path.abspath(__file__)], cwd=folder, stdout=log, stderr=subprocess.STDOUT, preexec_fn=limit)
-        usage = os.wait4(child.pid, 0)[2]
-    with open(os.path.join(folder, "result.json"), encoding="utf-8") as file:
-        result = json.load(file)
-    result["forces"] = {int(number): np.array(rows) for number, rows in result["forces"].items()}
-    return {**result, "cpu": usage.ru_utime + usage.ru_stime, "memory": usage.ru_maxrss / 1024}
+    return solved(sys.executable, __file__, content, folder, time_limit)
 
 
 class Solid:

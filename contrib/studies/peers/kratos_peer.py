@@ -8,9 +8,6 @@ whose shape is that of CalculiX's neo-Hookean law and whose volume term is Simo 
 
 import json
 import os
-import resource
-import subprocess
-import sys
 
 import numpy as np
 
@@ -31,11 +28,10 @@ DIVISIONS = (1, 4)
 def run(case, solver, folder, time_limit=3600):
     """solver: one of SOLVERS. Returns what calculix.run() returns, for the first of DIVISIONS that finishes, otherwise for that which gets
     the furthest."""
-    from plain_case import Unsupported
+    from plain_case import Unsupported, solved
 
     if case.degree != 1:
         raise Unsupported("elements of degree 2")
-    os.makedirs(folder, exist_ok=True)
     best = None
     for division in DIVISIONS:
         content = {
@@ -46,26 +42,12 @@ def run(case, solver, folder, time_limit=3600):
                            for number, (faces, components) in case.conditions().items()},
             "times": case.times().tolist(), "division": division, "solver": SOLVERS[solver],
         }  # fmt: skip
-        with open(os.path.join(folder, "case.json"), "w", encoding="utf-8") as file:
-            json.dump(content, file)
-        result = _child(folder, time_limit)
+        result = solved(os.environ.get("KRATOS_PYTHON", "python3"), __file__, content, folder, time_limit)
         if best is None or result["finished"] or result["time"] > best["time"]:
             best = result
         if best["finished"]:
             break
     return best
-
-
-def _child(folder, time_limit):
-    limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (time_limit, time_limit + 5))  # noqa: E731
-    python = os.environ.get("KRATOS_PYTHON", "python3")
-    with open(os.path.join(folder, "log"), "w", encoding="utf-8") as log:
-        child = subprocess.Popen([python, os.path.abspath(__file__)], cwd=folder, stdout=log, stderr=subprocess.STDOUT, preexec_fn=limit)
-        usage = os.wait4(child.pid, 0)[2]
-    with open(os.path.join(folder, "result.json"), encoding="utf-8") as file:
-        result = json.load(file)
-    result["forces"] = {int(number): np.array(rows) for number, rows in result["forces"].items()}
-    return {**result, "cpu": usage.ru_utime + usage.ru_stime, "memory": usage.ru_maxrss / 1024}
 
 
 def parameters(content):

@@ -22,8 +22,7 @@ import getfem_peer
 import kratos_peer
 from plain_case import HERE, PlainCase, common
 
-sys.path.insert(0, os.path.join(common.FOLDER, "scaling"))
-import hertz_case  # noqa: E402
+import hertz_case  # of the folder that plain_case adds
 
 PRM = os.path.join(common.ROOT, "prm")
 MERGED = {f"{loop} loop/Mode": "newton" for loop in ("Geometry", "Threshold", "Status")}
@@ -38,10 +37,6 @@ def _cells(bodies):
     return sets
 
 
-def _hertz(n):
-    return hertz_case.write(n, os.path.join(common.SCRATCH, "hertz"))
-
-
 def _ring(n):
     """prm/ironing.prm, which has n = 4."""
     return {**_cells(2), "Body 1/Generator arguments": f"{14 * n},{5 * n // 2},1 : -1.5,-1.5,0 : 5.5,0,0.2 : true",
@@ -49,17 +44,17 @@ def _ring(n):
 
 
 ONE = {"Load stepping/Interval ends": "1", "Load stepping/Increments": "1"}
-# file, keys, condition whose forces are compared, contact stiffness of CalculiX in the soft body's modulus over length: as a user, as an expert;
+# file in prm/ or number of cells of hertz, keys, condition whose forces are compared, contact stiffness of CalculiX in the soft body's modulus over length: as a user, as an expert;
 # how far GetFEM looks for the other surface: less than the thickness of a body
 CASES = {
-    "hertz_12": (_hertz(12), ONE, 4, (50, 1000), 0.2),
-    "hertz_24": (_hertz(24), ONE, 4, (50,), 0.2),
-    "ironing_ring": (os.path.join(PRM, "ironing.prm"), _ring(6), 4, (100, 1000), 0.15),
-    "ironing_3d": (os.path.join(PRM, "gallery", "ironing_3d.prm"),
+    "hertz_12": (12, ONE, 4, (50, 1000), 0.2),
+    "hertz_24": (24, ONE, 4, (50,), 0.2),
+    "ironing_ring": ("ironing.prm", _ring(6), 4, (100, 1000), 0.15),
+    "ironing_3d": ("gallery/ironing_3d.prm",
                    {**_cells(2), "Body 1/Generator arguments": "36, 8, 8 : 0,0,0 : 9,2,3 : true", "Load stepping/Increments": "10, 40"},
                    4, (100, 1000), 0.15),
-    "ironing": (os.path.join(PRM, "gallery", "ironing.prm"), _cells(2), 4, (10, 100), 1.0),
-    "press_fit": (os.path.join(PRM, "gallery", "press_fit.prm"), _cells(2), 2, (1, 10), 100.0),
+    "ironing": ("gallery/ironing.prm", _cells(2), 4, (10, 100), 1.0),
+    "press_fit": ("gallery/press_fit.prm", _cells(2), 2, (1, 10), 100.0),
 }  # fmt: skip
 HEADER = ["case", "unknowns", "program", "to t =", "increments", "cut back", "Newton iterations", "CPU s", "/ nodus", "peak MiB",
           "largest difference of forces until there"]  # fmt: skip
@@ -138,7 +133,8 @@ def peers(case, stiffnesses, release, folder, time_limit):
 
 def measure(name, programs, time_limit, before):
     """before: what earlier runs found, of which programs that are not asked for remain."""
-    path, sets, condition, stiffnesses, release = CASES[name]
+    source, sets, condition, stiffnesses, release = CASES[name]
+    path = os.path.join(PRM, source) if isinstance(source, str) else hertz_case.write(source, os.path.join(common.SCRATCH, "hertz"))
     folder = os.path.join(common.SCRATCH, "peers", name)
     case, forces = PlainCase(path, sets, folder), read_csv(name)
     found = {"nodus": run_nodus(name, path, sets, condition)}

@@ -4,6 +4,7 @@ Bodies are deformable, linear elastic or of Mooney-Rivlin's law with ratio 0; co
 are those that nodus finds (`--validate --surfaces`). What else a case has is refused.
 """
 
+import json
 import os
 import re
 import sys
@@ -14,6 +15,9 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 import common  # noqa: E402
 from common import nodus  # noqa: E402
+
+sys.path.insert(0, os.path.join(common.FOLDER, "scaling"))
+from hertz_case import measured  # noqa: E402
 
 # One thread for each program, that of nodus among them.
 os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "CCX_NPROC_STIFFNESS", "CCX_NPROC_RESULTS",
@@ -28,6 +32,29 @@ FACES = [(0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (
 
 class Unsupported(Exception):
     """What a case has and other programs are not given."""
+
+
+def limited(command, log, folder, time_limit):
+    """Runs a program there, to a number of CPU seconds at most. Returns its exit code, {"cpu" s, "memory" MiB}."""
+    run = measured(["prlimit", f"--cpu={time_limit}:{time_limit + 5}", *command], os.path.join(folder, log), folder)
+    return run["exit"], {"cpu": run["cpu"], "memory": run["peak MiB"]}
+
+
+def solved(python, program, content, folder, time_limit):
+    """Of a program in Python that makes result.json of the content of case.json: that, with arrays of the forces by condition, cpu and memory."""
+    os.makedirs(folder, exist_ok=True)
+    result = os.path.join(folder, "result.json")
+    if os.path.exists(result):  # of an earlier run
+        os.remove(result)
+    with open(os.path.join(folder, "case.json"), "w", encoding="utf-8") as file:
+        json.dump(content, file)
+    code, use = limited([python, os.path.abspath(program)], "log", folder, time_limit)
+    if not os.path.exists(result):
+        sys.exit(f"{program} ends with {code} and no result: see {os.path.join(folder, 'log')}")
+    with open(result, encoding="utf-8") as file:
+        found = json.load(file)
+    found["forces"] = {int(number): np.array(rows) for number, rows in found["forces"].items()}
+    return {**found, **use}
 
 
 def listed(value, separator):
