@@ -386,15 +386,16 @@ def try_advice(path, results, time_limit, facts, settings):
     return outcomes
 
 
-def run_case(options, n):
-    case = RandomCase(options.seed, n)
-    if options.increments:
+def run_case(n, seed, time_limit, increments=None, changes=(), advice=False):
+    """Writes, runs and judges a case. changes: of keys (--set). Returns its facts and what came of it."""
+    case = RandomCase(seed, n)
+    if increments:
         stepping = case.tree["Load stepping"]
-        stepping["Increments"] = ", ".join([str(options.increments)] * (stepping["Interval ends"].count(",") + 1))
+        stepping["Increments"] = ", ".join([str(increments)] * (stepping["Interval ends"].count(",") + 1))
     path = case.write("random_cases")
     results = path[: -len(".prm")]
-    settings = [word for setting in options.set for word in ("--set", setting)]
-    code, stopped, cpu, text = run(path, results, options.time_limit, settings)
+    settings = [word for setting in changes for word in ("--set", setting)]
+    code, stopped, cpu, text = run(path, results, time_limit, settings)
     row = {"case": n, **case.facts, "exit": code, "cpu": cpu,
            "cut-backs": text.count("the increment is halved"), "fallbacks": text.count(" given up: "),
            "used": remedies_used(text),
@@ -402,7 +403,7 @@ def run_case(options, n):
     row["reason"] = text.strip().splitlines()[-1] if code else ""
     if code:
         row["cause"] = classify(row["reason"], stopped)
-        row["advice"] = try_advice(path, results, options.time_limit, case.facts, settings) if options.advice else []
+        row["advice"] = try_advice(path, results, time_limit, case.facts, settings) if advice else []
     row.update(judged(results, code, with_settings(case.facts, settings)))
     if os.path.exists(os.path.join(results, "convergence.csv")):
         row["iterations"] = int((common.nodus.Results(results).convergence["iteration"] != 0).sum())
@@ -469,7 +470,9 @@ def main():
     rows = []
     # processes: OpenBLAS without threads of its own, on which checks stand, is not safe to call from several
     with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
-        for row in pool.map(functools.partial(run_case, options), numbers):
+        one = functools.partial(run_case, seed=options.seed, time_limit=options.time_limit, increments=options.increments,
+                                changes=options.set, advice=options.advice)  # fmt: skip
+        for row in pool.map(one, numbers):
             rows.append(row)
             state = "finished" if row["exit"] == 0 else f"exit {row['exit']} ({row['cause']})"
             print(f"{row['case']:4d} {row['shape']}, {row['scheme']}, degree {row['degree']}, mu {row['mu']}, {row['loops']}, "

@@ -84,8 +84,8 @@ class Tamper:
 
         change_table(os.path.join(self.folder, name), apply)
 
-    def move(self, body, by, near=None, fields=("points", "displacement")):
-        """Points of a body, or those near a place, in both files of the last state."""
+    def move(self, body, by, near=None, fields=("displacement",)):
+        """Nodes of a body, or those near a place, in both files of the last state, whose points are where nodes are in the reference."""
         for path, label in ((self.bodies, "body"), (self.contact, "pair")):
             mesh = nodus.read_mesh(path)
             of = np.round(mesh.fields[label])
@@ -269,7 +269,7 @@ def main():
     kinds = [name for name in vars(Tamper) if name[0] != "_" and name not in tools]
     seen = {kind: [] for kind in kinds}
     for n in options.only:
-        row = random_cases.run_case(options, n)
+        row = random_cases.run_case(n, options.seed, options.time_limit)
         case = random_cases.RandomCase(options.seed, n)
         folder = case.write("random_cases")[: -len(".prm")]
         run = nodus.Results(folder)
