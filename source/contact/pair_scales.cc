@@ -2,6 +2,7 @@
 #include "mesh/bodies.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace Nodus
 {
@@ -40,5 +41,19 @@ namespace Nodus
       diagonals.push_back(ends.first.distance(ends.second));
     }
     return diagonals;
+  }
+
+  double slave_over_master(const Parameters &parameters, const unsigned int pair, const std::vector<double> &stiffness)
+  {
+    const ContactPairParameters &keys = parameters.contact_pairs[pair];
+    if (keys.self_contact || keys.has_rigid_master())
+      return 0.;
+    double slave = std::numeric_limits<double>::max(), master = 0.;
+    for (const unsigned int body : keys.slave.bodies)
+      slave = std::min(slave, parameters.bodies[body - 1].rigid ? 0. : stiffness[body - 1]);
+    for (const unsigned int body : keys.master.bodies)
+      master = parameters.bodies[body - 1].rigid ? std::numeric_limits<double>::infinity()
+                                                 : std::max(master, stiffness[body - 1]);
+    return slave / master;
   }
 } // namespace Nodus

@@ -17,6 +17,11 @@ namespace Nodus
   std::vector<double> softer_diagonals(const std::vector<ContactPairParameters> &pairs,
                                        const std::vector<double>                &stiffness,
                                        const Bodies                             &bodies);
+
+  /// How many times the slave of a pair is as stiff as its master: the softest body of the one over the stiffest of the
+  /// other; 0 where one of them is rigid, or bodies may be either (self contact). @p stiffness: of the bodies
+  /// [pressure].
+  double slave_over_master(const Parameters &parameters, unsigned int pair, const std::vector<double> &stiffness);
 } // namespace Nodus
 
 #endif

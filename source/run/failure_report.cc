@@ -1,4 +1,5 @@
 #include "run/failure_report.h"
+#include "contact/pair_scales.h"
 #include "parallel/all_gather.h"
 #include "parallel/throw_everywhere.h"
 #include "run/unheld_bodies.h"
@@ -131,10 +132,12 @@ namespace Nodus
       const Pairing          &pairing  = contact.pairing();
       evidence.pairs.resize(surfaces.n_pairs());
       std::vector<std::vector<Ranked<Point>>> lost(surfaces.n_pairs());
+      const std::vector<double>               stiffness = p.model.stiffness();
       for (unsigned int i = 0; i < surfaces.n_pairs(); ++i)
       {
-        evidence.pairs[i].face_size        = surfaces.face_size(i);
-        evidence.pairs[i].master_face_size = surfaces.master_face_size(i);
+        evidence.pairs[i].face_size         = surfaces.face_size(i);
+        evidence.pairs[i].master_face_size  = surfaces.master_face_size(i);
+        evidence.pairs[i].slave_over_master = slave_over_master(p.model.parameters, i, stiffness);
       }
       for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
       {

@@ -3,6 +3,7 @@
 #include "bulk/rigid_material.h"
 #include "contact/facets.h"
 #include "contact/initial_overlap.h"
+#include "contact/pair_scales.h"
 #include "mesh/sides.h"
 #include "parallel/throw_everywhere.h"
 
@@ -22,6 +23,9 @@ namespace Nodus
   {
     /// Rubber on rubber has about half of it.
     constexpr double largest_usual_friction = 5.;
+    /// Over its master. Of 160 random cases with friction and stiffer slaves than that eight do not finish, of 140 with
+    /// slaves as much softer all do, in less than a quarter of the CPU (contrib/studies/robustness).
+    constexpr double stiffest_usual_slave = 100.;
 
     std::vector<std::unique_ptr<Material>> make_materials(const std::vector<BodyParameters> &bodies)
     {
@@ -237,12 +241,22 @@ namespace Nodus
     refuse_hidden_overlap(pairs, contact->surfaces(), bodies, as_it_is, now.unknowns.block(0), t);
     if (t == 0.)
     {
+      const std::vector<double> moduli = stiffness();
       for (unsigned int p = 0; p < pairs.size(); ++p)
+      {
         if (pairs[p].friction_coefficient > largest_usual_friction)
           warnings.push_back(text(pair_label(pairs, p),
                                   ": 'Friction coefficient' is ",
                                   pairs[p].friction_coefficient,
                                   "; it is a ratio of forces, not per cent, and of hard dry bodies rarely above 1"));
+        if (const double ratio = slave_over_master(parameters, p, moduli);
+            ratio >= stiffest_usual_slave && contact->status().has_friction(p))
+          warnings.push_back(text(pair_label(pairs, p),
+                                  ": the slave is ",
+                                  ratio,
+                                  " times as stiff as the master; with the softer side as slave runs with friction are "
+                                  "faster and fail less often"));
+      }
       for (const std::string &sentence :
            sides_that_stay_facets(parameters, contact->surfaces(), *contact->geometry(), bodies, *mapping))
         warnings.push_back(sentence);

@@ -174,6 +174,16 @@ int main(int argc, char **argv)
           "`Load stepping/Cut back` | false | true",
           "`Load stepping/Increments` | 1 | 4"});
 
+  auto stiff                              = newton; // the upper block is the slave
+  stiff.bodies[1].material.youngs_modulus = 2000;
+  expect("likewise with a slave that is 20 times as stiff as its master",
+         page(stiff),
+         "the slave is much stiffer than its master",
+         {"Young's modulus of the slave is 20 times that of the master",
+          "--set \"Contact pair 1/Slave body=1\" --set \"Contact pair 1/Slave boundary ids=5\"",
+          "--set \"Contact pair 1/Master body=2\" --set \"Contact pair 1/Master boundary ids=4\"",
+          "Newton did not converge in 2 iterations"});
+
   auto crushed                         = newton;
   crushed.newton.maximum_iterations    = 25;
   crushed.boundary_conditions[1].value = {"0", "0", "-4*t"};

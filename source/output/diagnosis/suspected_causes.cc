@@ -329,6 +329,9 @@ namespace Nodus
       add_instability(parameters, history, evidence, causes);
     if (kind == Kind::free_body || (!evidence.free_motions.empty() && !in_a_loop && !statuses))
       add_free_body(parameters, history, evidence, causes);
+    if (in_a_loop || statuses || kind == Kind::judged || kind == Kind::newton_limit || kind == Kind::newton_stalled ||
+        kind == Kind::newton_lost)
+      add_stiff_slave(parameters, evidence, causes);
     if (statuses)
       add_status_cycle(parameters, history, evidence, causes);
     if (kind == Kind::loop_limit && loop == "threshold")

@@ -64,6 +64,8 @@ namespace Nodus
     void add_coarse_slave(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
     /// Edges that press are better slave than master.
     void add_edge_between_nodes(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
+    /// A surface that is much softer than the other one is better slave than master.
+    void add_stiff_slave(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
     void add_over_constraint(const Parameters &parameters, const FailureEvidence &evidence, Causes &causes);
     /// Statuses that come and go.
     void add_status_cycle(const Parameters      &parameters,
