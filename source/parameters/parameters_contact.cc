@@ -302,7 +302,11 @@ namespace Nodus
   {
     const std::string where = "It is asked at the centres of the faces.";
     prm.add_parameter("Name", pair.name, "Name in tables and messages [-]; empty: pair <n>.", Patterns::Anything());
-    add_region(prm, "Slave ", pair.slave, " that carries the contact pressures, better the softer or finer one", where);
+    add_region(prm,
+               "Slave ",
+               pair.slave,
+               " that carries the contact pressures, better the softer one, of two alike the finer",
+               where);
     add_region(prm, "Master ", pair.master, " that the slave nodes are projected onto", where);
     prm.add_parameter("Self contact",
                       pair.self_contact,
@@ -310,7 +314,8 @@ namespace Nodus
                       "no master. Without a Slave body that is general contact: of all bodies, and without ids of all "
                       "outer faces. Rigid bodies with a mesh are master alone, and do not touch each other. Of two "
                       "faces that meet that one is slave which moves while the other is held, else "
-                      "the finer one, else that of the softer body, else of the one with the lower number. What is "
+                      "that of a body less than a tenth as stiff, else the finer one, else that of the softer body, "
+                      "else of the one with the lower number. What is "
                       "slave and master of another "
                       "pair is left to that pair at all times, of two pairs with Self contact to the later one.");
     add_excluded_bodies(prm, pair);

@@ -1,5 +1,6 @@
 // General contact: all outer faces of all bodies in one pair ("Self contact"). What is slave and master of another pair
-// is left to that one, of two such pairs to the later one, excluded bodies do not meet, and the softer body is slave.
+// is left to that one, of two such pairs to the later one, excluded bodies do not meet, and the finer body is slave,
+// the softer one where both are alike, the much softer one in any case.
 
 #include "../cases.h"
 
@@ -58,11 +59,15 @@ namespace
     check(what + ", friction over pressure", r.friction.norm() / pressure.norm(), coefficient, 1e-3);
   }
 
-  void check_softer(const std::string &name, const double lower, const double upper, const double slave_at)
+  void check_slave(const std::string &name,
+                   const double       lower,
+                   const double       upper,
+                   const std::string &cells_of_upper,
+                   const double       slave_at)
   {
     Parameters p;
     p.bodies                = {box("lower", "3,3,2", {0, 0, 0}, {1, 1, 1}, lower, 0.),
-                               box("upper", "3,3,2", {0, 0, 1.01}, {1, 1, 2.01}, upper, 0.)};
+                               box("upper", cells_of_upper, {0, 0, 1.01}, {1, 1, 2.01}, upper, 0.)};
     p.boundary_conditions   = {hold("ground", region(1, {z_minus}), {0, 1, 2}),
                                hold("sides", region(2, {z_plus}), {0, 1}),
                                drive("top", region(2, {z_plus}), 2, "-0.02*t")};
@@ -118,7 +123,9 @@ int main(int argc, char **argv)
   p.contact_pairs[0].excluded_bodies = {{3, 1}};
   check("excluded block: force, as without it", run(p)[0].slave_force.norm(), force, 1e-8);
 
-  check_softer("softer body above", 1000., 100., 1.01);
-  check_softer("softer body below", 100., 1000., 1.);
+  check_slave("softer body above", 500., 100., "3,3,2", 1.01);
+  check_slave("softer body below", 100., 500., "3,3,2", 1.);
+  check_slave("softer body below, finer one above", 100., 500., "6,6,2", 1.01);
+  check_slave("much softer body below, finer one above", 100., 5000., "6,6,2", 1.);
   return 0;
 }
