@@ -10,7 +10,7 @@ namespace Nodus
     {
       /// Slave faces that are so many times as large as those of the master do not see what is between their points.
       constexpr double coarser = 1.5;
-      /// Of eleven random cases that stop with slaves so many times as stiff as
+      /// Of thirteen random cases that stop with slaves so many times as stiff as
       /// their masters seven finish when these are exchanged (contrib/studies/robustness).
       constexpr double much_stiffer = 10.;
 
