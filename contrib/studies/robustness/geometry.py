@@ -240,8 +240,6 @@ class Surface:
         edges = np.stack([grid[:, eta, xi] for eta, xi in ends], 1)
         _, edge, count = np.unique(np.sort(edges, 2).reshape(-1, 2), axis=0, return_inverse=True, return_counts=True)
         self.rim = count[edge.ravel()].reshape(-1, 4) == 1  # edges at xi = 0, xi = 1, eta = 0, eta = 1
-        along = np.stack([grid[:, :, 0], grid[:, :, -1], grid[:, 0], grid[:, -1]], 1)
-        self.rim_nodes = np.unique(along[self.rim])
 
     def _average(self, weighted):
         """(P1): normal (faces, nodes, 3) of each node of each face."""
