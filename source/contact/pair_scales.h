@@ -18,6 +18,10 @@ namespace Nodus
                                        const std::vector<double>                &stiffness,
                                        const Bodies                             &bodies);
 
+  /// A master that is so many times softer than its slave cannot follow each node of it: of thirteen random cases that
+  /// stop with such slaves seven finish once the two sides are exchanged (contrib/studies/robustness).
+  constexpr double much_stiffer = 10.;
+
   /// How many times the slave of a pair is as stiff as its master: the softest body of the one over the stiffest of the
   /// other; 0 where one of them is rigid, or bodies may be either (self contact). @p stiffness: of the bodies
   /// [pressure].

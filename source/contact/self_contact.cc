@@ -1,4 +1,5 @@
 #include "contact/self_contact.h"
+#include "contact/pair_scales.h"
 
 #include <algorithm>
 #include <array>
@@ -13,8 +14,6 @@ namespace Nodus
     /// A face that is smaller than another one by more than this is the finer one, a body with less stiffness the
     /// softer.
     constexpr double finer = 0.8, softer = 0.8;
-    /// A master that is so much softer cannot follow each node of a finer slave (contrib/doc/which_scheme.md).
-    constexpr double much_softer = 0.1;
     /// Faces of one body and size have an order by where they look, and by where they are, in a direction that lies
     /// along no axis of a model.
     const Vector3    direction({0.80, 0.53, 0.28});
@@ -123,7 +122,7 @@ namespace Nodus
       return other.rigid;
     if (held != other.held)
       return other.held;
-    if (stiffness < much_softer * other.stiffness || other.stiffness < much_softer * stiffness)
+    if (much_stiffer * stiffness < other.stiffness || much_stiffer * other.stiffness < stiffness)
       return stiffness < other.stiffness;
     if (size < finer * other.size || other.size < finer * size)
       return size < other.size;

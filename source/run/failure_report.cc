@@ -135,9 +135,10 @@ namespace Nodus
       const std::vector<double>               stiffness = p.model.stiffness();
       for (unsigned int i = 0; i < surfaces.n_pairs(); ++i)
       {
-        evidence.pairs[i].face_size         = surfaces.face_size(i);
-        evidence.pairs[i].master_face_size  = surfaces.master_face_size(i);
-        evidence.pairs[i].slave_over_master = slave_over_master(p.model.parameters, i, stiffness);
+        evidence.pairs[i].face_size        = surfaces.face_size(i);
+        evidence.pairs[i].master_face_size = surfaces.master_face_size(i);
+        if (status.has_friction(i))
+          evidence.pairs[i].slave_over_master = slave_over_master(p.model.parameters, i, stiffness);
       }
       for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
       {

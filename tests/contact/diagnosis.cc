@@ -174,8 +174,9 @@ int main(int argc, char **argv)
           "`Load stepping/Cut back` | false | true",
           "`Load stepping/Increments` | 1 | 4"});
 
-  auto stiff                              = newton; // the upper block is the slave
-  stiff.bodies[1].material.youngs_modulus = 2000;
+  auto stiff                                  = newton; // the upper block is the slave
+  stiff.bodies[1].material.youngs_modulus     = 2000;
+  stiff.contact_pairs[0].friction_coefficient = 0.3;
   expect("likewise with a slave that is 20 times as stiff as its master",
          page(stiff),
          "the slave is much stiffer than its master",

@@ -1,3 +1,4 @@
+#include "contact/pair_scales.h"
 #include "output/diagnosis/suspected_causes.h"
 
 // Contact surfaces that go into each other although all contact laws hold: what the slave cannot see.
@@ -10,9 +11,6 @@ namespace Nodus
     {
       /// Slave faces that are so many times as large as those of the master do not see what is between their points.
       constexpr double coarser = 1.5;
-      /// Of thirteen random cases that stop with slaves so many times as stiff as
-      /// their masters seven finish when these are exchanged (contrib/studies/robustness).
-      constexpr double much_stiffer = 10.;
 
       /// One body with faces that may be either side, and whose keys say all of them.
       bool can_change_sides(const Parameters &parameters, const RegionParameters &side)

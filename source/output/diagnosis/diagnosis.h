@@ -92,7 +92,7 @@ namespace Nodus
       double       penetration = 0.; ///< largest of open sites [face sizes]
       double gap   = std::numeric_limits<double>::max(); ///< smallest of open sites with a master point [face sizes]
       double reach = 0., face_size = 0., master_face_size = 0.; ///< [length]
-      double slave_over_master = 0.;    ///< how many times the slave is as stiff; 0 where that says nothing
+      double slave_over_master = 0.;    ///< how many times the slave is as stiff; 0 without friction
       bool   intruded          = false; ///< the judge refused how far its surfaces are in each other
     };
     std::vector<Pair> pairs;
