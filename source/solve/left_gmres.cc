@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 namespace Nodus
@@ -15,6 +16,9 @@ namespace Nodus
     constexpr unsigned int cycle_length = 60;
     /// By which a cycle may reduce the residual: single precision, and some room.
     constexpr double cycle_reduction = 1e-6;
+    /// Of a preconditioned residual, against that of the right-hand side.
+    constexpr double resolved = 1e-15;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
 
     /// Orthonormal vectors, in single precision.
     class Basis
@@ -213,46 +217,51 @@ namespace Nodus
                           const unsigned int                                             maximum_iterations,
                           BlockVector                                                   &x)
   {
-    BlockVector  r(b), v;
+    BlockVector  r(b), v, candidate;
     const double norm_b = b.l2_norm();
-    double       norm_z = 0., target = .9 * tolerance;
+    double       norm_z = 0., target = .9 * tolerance, reachable = infinity;
     KrylovReport report{0, 1.};
     v.reinit(b);
+    candidate.reinit(b);
     x = 0.;
-    // The first start ends with the preconditioned residual; the next ones are for the residual itself.
-    for (unsigned int start = 0; start < 4 && !(report.residual <= tolerance) && report.iterations < maximum_iterations;
-         ++start)
+    // The preconditioned residual is known in every step, and says when to look at the residual itself.
+    bool done = false;
+    while (!done && report.iterations < maximum_iterations)
     {
-      for (bool reached = false; !reached && report.iterations < maximum_iterations;)
+      preconditioner(v, r);
+      const double beta = v.l2_norm();
+      if (norm_z == 0.)
+        norm_z = beta;
+      // Not a number, or round-off in double precision: nothing can be done about that.
+      if (!(beta < reachable && beta > resolved * norm_z))
+        break;
+      Basis        basis(A.communicator());
+      LeastSquares problem(beta);
+      double       norm = beta;
+      bool         full = false;
+      while (!full && !done)
       {
+        basis.add(v, norm);
+        A.vmult(r, v);
         preconditioner(v, r);
-        const double beta = v.l2_norm();
-        if (norm_z == 0.)
-          norm_z = beta;
-        if (!(beta > target * norm_z)) // not a number, too: nothing can be done about that
-          break;
-        const double wanted = std::max(target * norm_z, cycle_reduction * beta);
-        Basis        basis(A.communicator());
-        LeastSquares problem(beta);
-        double       norm = beta;
-        while (norm > 0. && std::isfinite(norm) && problem.residual() > wanted && basis.size() < cycle_length &&
-               report.iterations < maximum_iterations)
-        {
-          basis.add(v, norm);
-          A.vmult(r, v);
-          preconditioner(v, r);
-          std::vector<double> column = basis.orthogonalise(v);
-          norm                       = column.back();
-          problem.add(std::move(column));
-          ++report.iterations;
-        }
-        basis.add_to(x, problem.solution().data());
-        reached = !(problem.residual() > target * norm_z);
-        A.vmult(r, x);
+        std::vector<double> column = basis.orthogonalise(v);
+        norm                       = column.back();
+        problem.add(std::move(column));
+        ++report.iterations;
+        full = !(norm > 0.) || !std::isfinite(norm) || problem.residual() <= cycle_reduction * beta ||
+               basis.size() == cycle_length || report.iterations == maximum_iterations;
+        if (!full && problem.residual() > target * norm_z)
+          continue;
+        candidate = x;
+        basis.add_to(candidate, problem.solution().data());
+        A.vmult(r, candidate);
         r.sadd(-1., 1., b);
+        report.residual = r.l2_norm() / norm_b;
+        target = std::min(target, problem.residual() / norm_z * std::clamp(.5 * tolerance / report.residual, .3, 1.));
+        done   = report.residual <= tolerance && problem.residual() <= .9 * tolerance * norm_z;
       }
-      report.residual = r.l2_norm() / norm_b;
-      target *= std::min(1., .5 * tolerance / report.residual);
+      x         = candidate;
+      reachable = problem.residual() <= cycle_reduction * beta ? .5 * beta : infinity;
     }
     return report;
   }
