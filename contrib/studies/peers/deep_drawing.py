@@ -3,7 +3,8 @@
 
     deep_drawing.py [--radial N] [--layers L] [--stiffness K]    (MPa/mm, of the contact)
 
-Writes prm/gallery/deep_drawing.csv. The tools are meshed and prescribed, the edges of die and punch in 96 facets; the law is read from the case.
+Writes prm/gallery/deep_drawing.csv. The force of CalculiX depends on its increments, and halving them takes half of that away: there are two runs, with
+increments of 0.125 and 0.0625 mm, and the force is extrapolated to none. The tools are meshed and prescribed, the edges of die and punch in 96 facets; the law is read from the case.
 Needs ccx (Debian: calculix-ccx); CCX names the program.
 """
 
@@ -13,12 +14,15 @@ import os
 import re
 import subprocess
 
+import numpy as np
 from plain_case import common, listed, nodus
 
 CASE = os.path.join(common.ROOT, "prm", "gallery", "deep_drawing.prm")
 THICKNESS, RADIUS, TRAVEL = 2.0, 40.0, 25.0
 HOLDER, FRICTION = 20000.0, {"SPUNCH": 0.25, "SHOLDER": 0.125, "SDIE": 0.125}
 FACETS = 96
+# Of the way, at most.
+INCREMENTS = 0.005, 0.0025
 YOUNG, POISSON = "Young's modulus", "Poisson's ratio"
 
 
@@ -80,7 +84,7 @@ class Deck:
         self.write(f"*SURFACE, NAME={name}, TYPE=ELEMENT", *(f"{element}, S{side}" for element, side in faces))
 
 
-def deck(radial, layers, stiffness):
+def deck(radial, layers, stiffness, increment):
     material = nodus.Case.read(CASE, program=common.program())["Body 1"]["Material"]
     d = Deck()
     cells, lower, upper, axis = d.blank(radial, layers)
@@ -114,23 +118,27 @@ def deck(radial, layers, stiffness):
     d.write("*BOUNDARY", "AXIS, 1, 1", "NDIE, 1, 2", "NPUNCH, 1, 2", "NHOLDER, 1, 1")
     output = ["*NODE PRINT, NSET=NPUNCH, TOTALS=ONLY", "RF", "*END STEP"]
     d.write("*STEP, NLGEOM, INC=1000", "*STATIC", ".1, 1., 1e-5, .5", "*CLOAD", f"{first}, 2, {-HOLDER:g}", *output)
-    d.write("*STEP, NLGEOM, INC=5000", "*STATIC", ".005, 1., 1e-6, .01", "*BOUNDARY", f"NPUNCH, 2, 2, {-TRAVEL:g}", *output)
+    d.write("*STEP, NLGEOM, INC=5000", "*STATIC", f"{INCREMENTS[-1]}, 1., 1e-6, {increment}", "*BOUNDARY", f"NPUNCH, 2, 2, {-TRAVEL:g}", *output)
     return "\n".join(d.lines) + "\n"
 
 
-def run(radial, layers, stiffness):
+def run(radial, layers, stiffness, increment):
     """Way of the punch [mm] and force on it [N]; CalculiX prints that of a wedge of 2 degrees."""
-    folder = os.path.join(common.SCRATCH, "peers", "deep_drawing")
+    folder = os.path.join(common.SCRATCH, "peers", f"deep_drawing_{increment}")
     os.makedirs(folder, exist_ok=True)
     with open(os.path.join(folder, "cup.inp"), "w", encoding="ascii") as file:
-        file.write(deck(radial, layers, stiffness))
+        file.write(deck(radial, layers, stiffness, increment))
     done = subprocess.run([os.environ.get("CCX", "ccx"), "cup"], cwd=folder, env={**os.environ, "OMP_NUM_THREADS": "1"},
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)  # fmt: skip
-    with open(os.path.join(folder, "cup.dat"), encoding="ascii") as file:
-        found = re.findall(r"NPUNCH and time\s+(\S+)\s+\S+\s+(\S+)", file.read())
     if "ERROR" in done.stdout:
         print("CalculiX stops: " + done.stdout[done.stdout.index("*ERROR") :].splitlines()[0])
-    return [(TRAVEL * (float(time) - 1), -180 * float(force)) for time, force in found if float(time) > 1]
+    return forces(folder)
+
+
+def forces(folder):
+    with open(os.path.join(folder, "cup.dat"), encoding="ascii") as file:
+        found = re.findall(r"NPUNCH and time\s+(\S+)\s+\S+\s+(\S+)", file.read())
+    return np.array([(TRAVEL * (float(time) - 1), -180 * float(force)) for time, force in found if float(time) > 1])
 
 
 def main():
@@ -139,11 +147,15 @@ def main():
     parser.add_argument("--layers", type=int, default=3)
     parser.add_argument("--stiffness", type=float, default=5e4)
     options = parser.parse_args()
-    forces = run(options.radial, options.layers, options.stiffness)
+    runs = [run(options.radial, options.layers, options.stiffness, increment) for increment in INCREMENTS]
+    ways = np.arange(0.25, min(r[-1, 0] for r in runs) + 1e-6, 0.25)
+    coarse, fine = (np.interp(ways, *r.T) for r in runs)
     with open(os.path.splitext(CASE)[0] + ".csv", "w", encoding="utf-8") as file:
         file.write(f"# Way of the punch [mm] and force on it [N]: CalculiX by contrib/studies/peers/deep_drawing.py, {options.radial} x {options.layers} cells CAX8R, "
-                   f"contact stiffness {options.stiffness:g} MPa/mm\nway,force\n")  # fmt: skip
-        file.writelines(f"{way:.6g},{force:.6g}\n" for way, force in forces)
+                   f"contact stiffness {options.stiffness:g} MPa/mm; extrapolated from those with increments of 0.125 and 0.0625 mm\n"
+                   "way,force,increments of 0.125,increments of 0.0625\n")  # fmt: skip
+        for row in zip(ways, 2 * fine - coarse, coarse, fine):
+            file.write(",".join(f"{value:.6g}" for value in row) + "\n")
 
 
 if __name__ == "__main__":
