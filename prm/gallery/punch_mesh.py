@@ -2,7 +2,7 @@
 """Makes punch.msh and punch_foundation.msh: punch_mesh.py [cells around the quarter, even; default 8]
 
 Quarters of the punch (radius 50, height 100, edge radius 10, flat end on z = 0) and of the foundation (radius 100, z = -200 to 0),
-x and y >= 0, hexahedra of first order. A section in r and z is turned about the z axis from r = 20 on; the core is a square with
+x and y >= 0, hexahedra of second order whose sides are curved around the axis and along the edge. A section in r and z is turned about the z axis from r = 20 on; the core is a square with
 two blocks around it.
 
 Volume 1; surfaces: 11 contact (flat end and half of the edge; the upper side), 12 x = 0, 13 y = 0, 14 the other end, 15 the rest.
@@ -74,33 +74,51 @@ def solid(section, levels, around):
 
 
 FACES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+# Of gmsh's hexahedron of 20 nodes and its quadrilateral of 8.
+EDGES = ((0, 1), (0, 3), (0, 4), (1, 2), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 7), (5, 6), (6, 7))
+SIDES = ((0, 1), (1, 2), (2, 3), (3, 0))
+
+
+def middle(p, q):
+    """Of an edge: on the circle around the axis or on that of the punch's edge where its ends are."""
+    point = [(a + b) / 2 for a, b in zip(p, q)]
+    r = [math.hypot(*x[:2]) for x in (p, q)]
+    if abs(p[2] - q[2]) < 1e-6 and abs(r[0] - r[1]) < 1e-6 and r[0] > 19.99:
+        scale = r[0] / math.hypot(*point[:2])
+        return point[0] * scale, point[1] * scale, point[2]
+    if all(abs(math.hypot(a - 40, x[2] - 10) - 10) < 1e-6 and a > 39.99 and x[2] < 10.01 for a, x in zip(r, (p, q))):
+        a, z = math.hypot(*point[:2]) - 40, point[2] - 10
+        to_arc, scale = 10 / math.hypot(a, z), 1 / math.hypot(*point[:2])
+        return point[0] * scale * (40 + a * to_arc), point[1] * scale * (40 + a * to_arc), 10 + z * to_arc
+    return tuple(point)
 
 
 def write(path, cells, contact, end):
-    """A gmsh file of format 2.2; contact and end: functions of the points of a face."""
+    """A gmsh file of format 2.2; contact and end: functions of the corners of a face."""
     numbers, points, solids, faces = {}, [], [], {}
+
+    def number(p):
+        key = tuple(round(c, 6) for c in p)
+        if key not in numbers:
+            numbers[key] = len(points) + 1
+            points.append(tuple(p))
+        return numbers[key]
+
     for cell in cells:
-        ids = []
-        for p in cell:
-            key = tuple(round(c, 6) for c in p)
-            if key not in numbers:
-                numbers[key] = len(points) + 1
-                points.append(key)
-            ids.append(numbers[key])
-        e = [[points[ids[i] - 1][c] - points[ids[0] - 1][c] for c in range(3)] for i in (1, 3, 4)]
+        e = [[cell[i][c] - cell[0][c] for c in range(3)] for i in (1, 3, 4)]
         volume = sum(e[0][i] * (e[1][i - 2] * e[2][i - 1] - e[1][i - 1] * e[2][i - 2]) for i in range(3))
         if volume < 0:
-            ids = ids[4:] + ids[:4]
-        solids.append(ids)
+            cell = cell[4:] + cell[:4]
+        solids.append([number(p) for p in cell] + [number(middle(cell[a], cell[b])) for a, b in EDGES])
         for face in FACES:
-            nodes = [ids[i] for i in face]
-            faces.setdefault(tuple(sorted(nodes)), []).append(nodes)
+            at = [cell[i] for i in face]
+            nodes = [number(p) for p in at]
+            faces.setdefault(tuple(sorted(nodes)), []).append((at, nodes + [number(middle(at[a], at[b])) for a, b in SIDES]))
     names = {11: "contact", 12: "x0", 13: "y0", 14: "end", 15: "rest"}
     sides = []
-    for (nodes, *others) in faces.values():
+    for ((at, nodes), *others) in faces.values():
         if others:
             continue
-        at = [points[n - 1] for n in nodes]
         tests = ((12, all(abs(p[0]) < 1e-5 for p in at)), (13, all(abs(p[1]) < 1e-5 for p in at)), (11, contact(at)), (14, end(at)))
         sides.append((next((tag for tag, holds in tests if holds), 15), nodes))
     with open(path, "w", encoding="ascii") as out:
@@ -109,8 +127,8 @@ def write(path, cells, contact, end):
         out.write(f"$EndPhysicalNames\n$Nodes\n{len(points)}\n")
         out.writelines(f"{n} {p[0]:.7g} {p[1]:.7g} {p[2]:.7g}\n" for n, p in enumerate(points, 1))
         out.write(f"$EndNodes\n$Elements\n{len(sides) + len(solids)}\n")
-        out.writelines(f"{n} 3 2 {tag} {tag} {' '.join(map(str, nodes))}\n" for n, (tag, nodes) in enumerate(sides, 1))
-        out.writelines(f"{n} 5 2 1 1 {' '.join(map(str, ids))}\n" for n, ids in enumerate(solids, len(sides) + 1))
+        out.writelines(f"{n} 16 2 {tag} {tag} {' '.join(map(str, nodes))}\n" for n, (tag, nodes) in enumerate(sides, 1))
+        out.writelines(f"{n} 17 2 1 1 {' '.join(map(str, ids))}\n" for n, ids in enumerate(solids, len(sides) + 1))
         out.write("$EndElements\n")
 
 
