@@ -13,10 +13,10 @@ SPRING = 1e4
 
 class Deck:
     """The text of a deck. stiffness: of the contact, pressure over overlap; stick: shear over slip in sticking contact; without them
-    contact is hard, by mortar."""
+    contact is hard, by mortar. solver: of linear systems, as CalculiX names it."""
 
-    def __init__(self, case, stiffness=None, stick=None):
-        self.case, self.stiffness, self.stick = case, stiffness, stick
+    def __init__(self, case, stiffness=None, stick=None, solver="SPOOLES"):
+        self.case, self.stiffness, self.stick, self.solver = case, stiffness, stick, solver
         self.lines = []
         self._mesh()
         self._materials()
@@ -25,7 +25,7 @@ class Deck:
         self.text = "\n".join(self.lines) + "\n"
 
     def _mesh(self):
-        self.lines += ["*NODE, NSET=ALL"] + ["%d, %.12g, %.12g, %.12g" % (i, *x) for i, x in enumerate(self.case.points, 1)]
+        self.lines += ["*NODE, NSET=ALL"] + ["%d, %.12g, %.12g, %.12g" % (i, *self.case.points[i - 1]) for i in np.unique(self.case.elements)]
         kind = ELEMENTS[self.case.degree]
         for body in np.unique(self.case.body):
             self.lines.append(f"*ELEMENT, TYPE={kind}, ELSET=BODY{body}")
@@ -54,6 +54,11 @@ class Deck:
                 self.lines += ["*FRICTION", f"{friction}, {self.stick or SPRING * self._stiffest():.8g}"]
             kind = "SURFACE TO SURFACE" if self.stiffness else "MORTAR"
             self.lines += [f"*CONTACT PAIR, INTERACTION=CONTACT{number}, TYPE={kind}", f"SLAVE{number}, MASTER{number}"]
+
+        for number, sides in self.case.ties().items():
+            for side, faces in zip(("SLAVE", "MASTER"), sides):
+                self.lines += [f"*SURFACE, NAME={side}{number}, TYPE=ELEMENT", *(f"{e}, S{s}" for e, s in faces)]
+            self.lines += [f"*TIE, NAME=TIE{number}", f"SLAVE{number}, MASTER{number}"]
 
     def _stiffest(self):
         return max(modulus for _, modulus, _ in self.case.laws().values())
@@ -93,46 +98,68 @@ class Deck:
                 self.lines.append(f"*AMPLITUDE, NAME=A{number}{axis}, TIME=TOTAL TIME")
                 self.lines += [f"{t:.12g}, {value:.12g}" for t, value in zip(self.case.times(), history)]
                 moved += [f"*BOUNDARY, AMPLITUDE=A{number}{axis}", f"{name}, {axis}, {axis}, 1"]
+        if self.case.probe:
+            self.lines += ["*NSET, NSET=CONDITION0", f"{self.case.probe},"]
+            prints += ["*NODE PRINT, NSET=CONDITION0", "U"]
         self.lines += fixed
         for begin, end, count in self.case.intervals():
             step = (end - begin) / count
-            self.lines += ["*STEP, NLGEOM, INC=10000", "*STATIC", f"{step:.10g}, {end - begin:.10g}, {1e-6 * step:.3g}, {step:.10g}",
-                           *moved, *prints, "*END STEP"]  # fmt: skip
+            self.lines += ["*STEP, NLGEOM, INC=10000", f"*STATIC, SOLVER={self.solver}", f"{step:.10g}, {end - begin:.10g}, {1e-6 * step:.3g}, {step:.10g}",
+                           *moved, *prints, "*NODE PRINT, NSET=ALL, FREQUENCY=10000", "U", "*END STEP"]  # fmt: skip
 
 
 def _forces(path):
     """condition -> rows (time, x, y, z)."""
     rows, lines = {}, iter(open(path, encoding="utf-8").read().splitlines())
     for line in lines:
-        found = re.search(r"for set CONDITION(\d+) and time +(\S+)", line)
+        found = re.search(r" set CONDITION(\d+) and time +(\S+)", line)
         if found:
             text = next(value for value in lines if value.strip())
-            rows.setdefault(int(found.group(1)), []).append([float(found.group(2)), *map(float, text.split())])
+            rows.setdefault(int(found.group(1)), []).append([float(found.group(2)), *map(float, text.split()[-3:])])
     return {number: np.array(values) for number, values in rows.items()}
 
 
-def run(case, stiffness, stick, folder, time_limit=3600):
-    """Writes and runs the deck in a folder, on one thread; without stiffness by mortar. Returns {"finished", "time", "increments",
-    "iterations", "cut-backs", "cpu" s, "memory" MiB, "forces": condition -> rows (time, x, y, z)}; deck.log has what CalculiX says."""
+def _displacements(path, n):
+    """Of all nodes (n, 3) in the last increment, or None."""
+    found, inside = None, False
+    with open(path, encoding="utf-8") as file:
+        for line in file:
+            if " for set " in line:
+                inside = "for set ALL and" in line
+                if inside:
+                    found = np.zeros((n, 3))
+            elif inside and line.strip():
+                number, *values = line.split()
+                found[int(number) - 1] = list(map(float, values))
+    return found
+
+
+def run(case, stiffness, stick, folder, time_limit=3600, solver="SPOOLES"):
+    """Writes and runs the deck in a folder, on one thread; without stiffness by mortar, which takes SPOOLES alone. Returns {"finished", "time", "increments",
+    "iterations", "cut-backs", "cpu" s, "memory" MiB, "forces": condition -> rows (time, x, y, z), "displacements": of the points at the end, where it
+    finished}; deck.log has what CalculiX says."""
     os.makedirs(folder, exist_ok=True)
-    deck = Deck(case, stiffness, stick)
+    deck = Deck(case, stiffness, stick, solver)
     for name in os.listdir(folder):
         if name.startswith("deck."):
             os.remove(os.path.join(folder, name))
     with open(os.path.join(folder, "deck.inp"), "w", encoding="utf-8") as file:
         file.write(deck.text)
     code, use = limited([os.environ.get("CCX", "ccx"), "deck"], "deck.log", folder, time_limit)
-    rows = np.loadtxt(os.path.join(folder, "deck.sta"), skiprows=2, usecols=(2, 4), dtype=str, ndmin=2)
+    with open(os.path.join(folder, "deck.sta"), encoding="utf-8") as file:
+        rows = np.array([[line.split()[2], line.split()[4]] for line in file.readlines()[2:]]).reshape(-1, 2)
     failed = np.char.endswith(rows[:, 0], "U")  # of the attempts
-    iterations = np.loadtxt(os.path.join(folder, "deck.cvg"), skiprows=4, usecols=0, dtype=int, ndmin=1)
+    with open(os.path.join(folder, "deck.cvg"), encoding="utf-8") as file:
+        iterations = len(file.readlines()[4:])
     with open(os.path.join(folder, "deck.log"), encoding="utf-8", errors="replace") as log:
         finished = code == 0 and "Job finished" in log.read()
     return {
         "finished": finished,
         "time": float(rows[~failed, 1][-1]) if not failed.all() else 0.0,
         "increments": int(np.count_nonzero(~failed)),
-        "iterations": len(iterations),
+        "iterations": iterations,
         "cut-backs": int(np.count_nonzero(failed)),
         **use,
         "forces": _forces(os.path.join(folder, "deck.dat")),
+        "displacements": _displacements(os.path.join(folder, "deck.dat"), len(case.points)),
     }

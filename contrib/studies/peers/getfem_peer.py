@@ -9,8 +9,6 @@ import sys
 
 import numpy as np
 
-# Corners of an element of CalculiX in the order of the lattice, x fastest.
-LATTICE = [0, 1, 3, 2, 4, 5, 7, 6]
 # Of displacements, in Young's moduli over the length of an element; residuals are relative to what it gives.
 PENALTY, TOLERANCE = 1e4, 3e-11
 HALVINGS, ITERATIONS = 10, 30
@@ -18,16 +16,14 @@ HALVINGS, ITERATIONS = 10, 30
 
 def run(case, augmentation, release, folder, time_limit=3600):
     """augmentation: in pressure; release: how far the other surface is looked for [length]. Returns what calculix.run() returns."""
-    from plain_case import Unsupported, solved
+    from plain_case import solved
 
-    if case.degree != 1:
-        raise Unsupported("elements of degree 2")
-    corners = case.elements - 1
     content = {
-        "points": case.points.tolist(),
-        "bodies": {str(b): {"elements": corners[case.body == b].tolist(), "law": law} for b, law in case.laws().items()},
-        "pairs": [[case.corners_of(slave), case.corners_of(master), friction] for slave, master, friction in case.pairs().values()],
-        "conditions": {str(number): [case.corners_of(faces), [[c, history.tolist()] for c, history in components]]
+        "points": case.points.tolist(), "body of point": case.body_of_point.tolist(), "degree": case.degree, "probe": case.probe,
+        "bodies": {str(b): {"elements": case.lattice[case.body == b].tolist(), "law": law} for b, law in case.laws().items()},
+        "pairs": [[case.lattice_of(slave), case.lattice_of(master), friction] for slave, master, friction in case.pairs().values()],
+        "ties": [[case.lattice_of(slave), case.lattice_of(master)] for slave, master in case.ties().values()],
+        "conditions": {str(number): [case.lattice_of(faces), [[c, history.tolist()] for c, history in components]]
                        for number, (faces, components) in case.conditions().items()},
         "times": case.times().tolist(), "augmentation": augmentation, "release": release,
     }  # fmt: skip
@@ -49,15 +45,18 @@ class Solid:
         self.conditions = [self._condition(number, *data) for number, data in content["conditions"].items()]
         for p, pair in enumerate(content["pairs"], 1):
             self._add_pair(p, *pair)
+        for p, tie in enumerate(content["ties"], 1):
+            self._add_tie(p, *tie)
 
     def _add_body(self, body, elements, linear, modulus, ratio):
         getfem, model = self.getfem, self.model
         mesh = getfem.Mesh("empty", 3)
-        mesh.add_convex(getfem.GeoTrans("GT_QK(3,1)"), self.points[elements[:, LATTICE]].transpose(2, 1, 0))
+        degree = self.content["degree"]
+        mesh.add_convex(getfem.GeoTrans(f"GT_QK(3,{degree})"), self.points[elements].transpose(2, 1, 0))
         self.meshes[body] = mesh
         self.spaces[body] = getfem.MeshFem(mesh, 3)
-        self.spaces[body].set_classical_fem(1)
-        self.rules[body] = getfem.MeshIm(mesh, 4)
+        self.spaces[body].set_classical_fem(degree)
+        self.rules[body] = getfem.MeshIm(mesh, 2 * degree + 2)
         model.add_fem_variable(f"u{body}", self.spaces[body])
         model.add_fem_data(f"w{body}", self.spaces[body])  # at the last time
         shear, bulk = modulus / (2 * (1 + ratio)), modulus / (3 * (1 - 2 * ratio))
@@ -68,7 +67,8 @@ class Solid:
         else:
             model.add_initialized_data(f"law{body}", [shear / 2, bulk / 2])
             model.add_finite_strain_elasticity_brick(self.rules[body], "Compressible Neo Hookean", f"u{body}", f"law{body}")
-        size = np.cbrt(abs(np.linalg.det(self.points[elements[0, [1, 3, 4]]] - self.points[elements[0, 0]])))
+        edges = self.points[elements[0, [degree, degree * (degree + 1), degree * (degree + 1) ** 2]]] - self.points[elements[0, 0]]
+        size = np.cbrt(abs(np.linalg.det(edges)))
         model.add_initialized_data(f"penalty{body}", PENALTY * modulus / size)
 
     def _region(self, faces):
@@ -105,6 +105,16 @@ class Solid:
         model.add_master_contact_boundary_to_large_sliding_contact_brick(brick, self.rules[master_body], master_region, f"u{master_body}",
                                                                          f"w{master_body}")  # fmt: skip
 
+    def _add_tie(self, p, slave, master):
+        """By the penalty of the slave; both sides have the same reference surface."""
+        ((slave_body, region),) = self._region(slave).items()
+        master_body = master[0][0]
+        there = f"there{p}"
+        self.model.add_interpolate_transformation_from_expression(there, self.meshes[slave_body], self.meshes[master_body], "X")
+        u, v = f"u{slave_body}", f"u{master_body}"
+        self.model.add_linear_term(self.rules[slave_body], f"penalty{slave_body}*({u}-Interpolate({v},{there}))"
+                                   f".(Test_{u}-Interpolate(Test_{v},{there}))", region)  # fmt: skip
+
     def at(self, t):
         for number, _, components in self.conditions:
             for component, history in components:
@@ -119,7 +129,21 @@ class Solid:
                 for body, region in regions.items():
                     found[number][component] += float(self.getfem.asm_generic(
                         self.rules[body], 0, f"penalty{body}*(d{number}_{component}-u{body}({component + 1}))", region, self.model))  # fmt: skip
+        if self.content["probe"]:
+            point = self.points[self.content["probe"] - 1]
+            for body, space in self.spaces.items():
+                if np.any(np.linalg.norm(space.basic_dof_nodes().T - point, axis=1) < 1e-9 * (1 + np.linalg.norm(point))):
+                    values = self.getfem.compute_interpolate_on(space, self.model.variable(f"u{body}"), point.reshape(3, 1))
+                    found["0"] = np.ravel(values).tolist()
         return found
+
+    def displacements(self):
+        """Of all points."""
+        found, body_of = np.zeros_like(self.points), np.array(self.content["body of point"])
+        for body, space in self.spaces.items():
+            here = body_of == body
+            found[here] = self.getfem.compute_interpolate_on(space, self.model.variable(f"u{body}"), self.points[here].T).T
+        return found.tolist()
 
     def solve(self, t):
         """Newton iterations, and whether they converged."""
@@ -133,7 +157,7 @@ def main():
         content = json.load(file)
     solid = Solid(content)
     state = solid.model.from_variables()
-    result = {"finished": False, "time": 0.0, "increments": 0, "iterations": 0, "cut-backs": 0, "forces": {number: [] for number, *_ in solid.conditions}}
+    result = {"finished": False, "time": 0.0, "increments": 0, "iterations": 0, "cut-backs": 0, "forces": {}}
     targets, halved = list(content["times"][:0:-1]), 0
     while targets:
         t = targets[-1]
@@ -147,7 +171,7 @@ def main():
                 solid.model.set_variable(f"w{body}", solid.model.variable(f"u{body}"))
             result.update(time=t, increments=result["increments"] + 1)
             for number, force in solid.forces().items():
-                result["forces"][number].append([t, *force])
+                result["forces"].setdefault(number, []).append([t, *force])
         else:
             solid.model.to_variables(state)
             halved += 1
@@ -156,6 +180,8 @@ def main():
                 break
             targets.append((result["time"] + t) / 2)
         result["finished"] = not targets
+        if result["finished"]:
+            result["displacements"] = solid.displacements()
         with open("result.json", "w", encoding="utf-8") as file:
             json.dump(result, file)
         print(f"t = {result['time']:g}, {result['iterations']} iterations, {result['cut-backs']} cut-backs", flush=True)

@@ -1,7 +1,8 @@
 """A case of nodus as other programs can take it: mesh, surfaces, laws, displacements and pairs, and no more.
 
 Bodies are deformable, linear elastic or of Mooney-Rivlin's law with ratio 0; conditions are displacements that depend on the time alone; surfaces
-are those that nodus finds (`--validate --surfaces`). What else a case has is refused.
+are those that nodus finds (`--validate --surfaces`), free or tied. What else a case has is refused. Histories of forces are by the number of a condition; 0
+stands for the displacements of one node, `probe`, where it is asked for.
 """
 
 import json
@@ -16,7 +17,8 @@ sys.path.insert(0, os.path.dirname(HERE))
 import common  # noqa: E402
 from common import nodus  # noqa: E402
 
-sys.path.insert(0, os.path.join(common.FOLDER, "scaling"))
+sys.path[:0] = [os.path.join(common.FOLDER, folder) for folder in ("scaling", "robustness")]
+from geometry import depth_below  # noqa: E402
 from hertz_case import measured  # noqa: E402
 
 # One thread for each program, that of nodus among them.
@@ -26,8 +28,9 @@ os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "CCX
 # Nodes of an element as positions in the lattice of nodes, in the order of CalculiX; the first eight are the corners.
 _CORNERS = "000 100 110 010 001 101 111 011".split()
 EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
-# Corners of the faces S1 to S6.
+# Corners of the faces S1 to S6; their axis, and on which end of it they are.
 FACES = [(0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)]
+SIDES = [(2, 0), (2, 1), (1, 0), (0, 1), (1, 1), (0, 0)]
 
 
 class Unsupported(Exception):
@@ -35,9 +38,9 @@ class Unsupported(Exception):
 
 
 def limited(command, log, folder, time_limit):
-    """Runs a program there, to a number of CPU seconds at most. Returns its exit code, {"cpu" s, "memory" MiB}."""
+    """Runs a program there, to a number of CPU seconds at most. Returns its exit code, {"cpu" s, "memory" MiB, "out of time"}."""
     run = measured(["prlimit", f"--cpu={time_limit}:{time_limit + 5}", *command], os.path.join(folder, log), folder)
-    return run["exit"], {"cpu": run["cpu"], "memory": run["peak MiB"]}
+    return run["exit"], {"cpu": run["cpu"], "memory": run["peak MiB"], "out of time": run["cpu"] > 0.99 * time_limit}
 
 
 def solved(python, program, content, folder, time_limit):
@@ -49,6 +52,8 @@ def solved(python, program, content, folder, time_limit):
     with open(os.path.join(folder, "case.json"), "w", encoding="utf-8") as file:
         json.dump(content, file)
     code, use = limited([python, os.path.abspath(program)], "log", folder, time_limit)
+    if use["out of time"] and not os.path.exists(result):
+        return {"finished": False, "time": 0.0, "increments": 0, "iterations": None, "cut-backs": 0, "forces": {}, **use}
     if not os.path.exists(result):
         sys.exit(f"{program} ends with {code} and no result: see {os.path.join(folder, 'log')}")
     with open(result, encoding="utf-8") as file:
@@ -71,15 +76,25 @@ def _element_nodes(cells):
     return np.stack([cells[:, k, j, i] for i, j, k in places], axis=1)
 
 
-class PlainCase:
-    """points (n, 3) at the start; elements (n, nodes), numbers from 1 on, in the order of CalculiX; body of each element; n_unknowns."""
+def _triangles(grid):
+    """(m, 3, 3) of points (n, n, 3): four around the middle of each quadrilateral."""
+    quads = [grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]]
+    middle = sum(quads) / 4
+    return np.concatenate([np.stack([quads[i], quads[(i + 1) % 4], middle], axis=2).reshape(-1, 3, 3) for i in range(4)])
 
-    def __init__(self, path, sets, folder):
+
+class PlainCase:
+    """points (n, 3) at the start; elements (n, nodes), numbers from 1 on, in the order of CalculiX; lattice (n, nodes), numbers from 0 on, of all nodes of
+    each element, x fastest; body of each element; n_unknowns."""
+
+    def __init__(self, path, sets, folder, probe=None):
+        """probe: a point of a node, in the reference state."""
         self.case = nodus.Case.read(path, program=common.program())
         for key, value in sets.items():
             self.case[key] = self.case.reference[key].value(value)
         self._mesh(path, sets, folder)
         self._surfaces(path, sets, folder)
+        self.probe = None if probe is None else self.node_at(probe)
 
     def numbered(self, name):
         """Sections such as Body 1, Body 2 by their numbers."""
@@ -90,12 +105,12 @@ class PlainCase:
         start = {**sets, "Output/Results folder": os.path.join(folder, "mesh"), "Load stepping/Interval ends": 1e-9,
                  "Load stepping/Increments": 1, "Output/Checkpoint interval": 0}  # fmt: skip
         mesh = common.program().run(path, sets=start, check=False).bodies(0.0)
-        nodes = _element_nodes(mesh.cells)
-        used, rows = np.unique(nodes, return_inverse=True)
-        self.degree = mesh.cells.shape[1] - 1
-        self.elements = rows.reshape(nodes.shape) + 1
-        self.body = mesh.fields["body"][nodes[:, 0]].round().astype(int)
-        self.points = mesh.reference[used]
+        used, rows = np.unique(mesh.cells, return_inverse=True)
+        cells = rows.reshape(mesh.cells.shape)
+        self.degree = cells.shape[1] - 1
+        self.elements, self.lattice = _element_nodes(cells) + 1, cells.reshape(len(cells), -1)
+        self.body = mesh.fields["body"][mesh.cells[:, 0, 0, 0]].round().astype(int)
+        self.points, self._used = mesh.reference[used], used
         self.body_of_point = mesh.fields["body"][used].round().astype(int)
         self.n_unknowns = 3 * len(used)
 
@@ -133,6 +148,54 @@ class PlainCase:
         """Body and corners, numbers from 0 on, of element faces."""
         return [[int(self.body[e - 1]), (self.elements[e - 1][list(FACES[s - 1])] - 1).tolist()] for e, s in faces]
 
+    def lattice_of(self, faces):
+        """Body and all nodes, numbers from 0 on, of element faces."""
+        found = []
+        for e, s in faces:
+            axis, end = SIDES[s - 1]
+            lattice = self.lattice[e - 1].reshape((self.degree + 1,) * 3)
+            found.append([int(self.body[e - 1]), lattice.take(end * self.degree, axis=2 - axis).ravel().tolist()])
+        return found
+
+    def displacements(self, mesh):
+        """Of points, from the bodies of a run of nodus."""
+        assert np.allclose(mesh.reference[self._used], self.points)
+        return mesh.fields["displacement"][self._used]
+
+    def penetration(self, displacements):
+        """How deep nodes of slave and master faces are under the faces of the other body, at most, in mean sides of slave faces at the start.
+        Faces of cells of degree 2 are four of degree 1."""
+        x, deepest = self.points + displacements, 0.0
+        outside = self._outside()
+        for slave, master, _ in self.pairs().values():
+            for here, there in ((slave, master), (master, slave)):
+                nodes = np.unique([node for _, face in self.lattice_of(here) for node in face])
+                bodies = {body for body, _ in self.lattice_of(there)}
+                triangles = np.concatenate([_triangles(x[face].reshape(self.degree + 1, -1, 3)) for body, face in outside if body in bodies])
+                deepest = max(deepest, depth_below(x[nodes], triangles).max())
+            area = np.concatenate([_triangles(self.points[face].reshape(self.degree + 1, -1, 3)) for _, face in self.lattice_of(slave)])
+            size = np.sqrt(np.linalg.norm(np.cross(area[:, 1] - area[:, 0], area[:, 2] - area[:, 0]), axis=1).sum() / 2 / len(slave))
+        return deepest / size
+
+    def _outside(self):
+        """Body and nodes of the faces of one cell alone, outwards."""
+        found = {}
+        for e, corners in enumerate(self.elements, 1):
+            for s, face in enumerate(FACES, 1):
+                found.setdefault(frozenset(corners[list(face)]), []).append((e, s))
+        faces = [faces[0] for faces in found.values() if len(faces) == 1]
+        result = []
+        for (body, nodes), (_, s) in zip(self.lattice_of(faces), faces):
+            grid = np.array(nodes).reshape(self.degree + 1, -1)
+            # the second axis of the grid comes first; a face at the end of its axis looks along it
+            turn = (SIDES[s - 1][1] == 1) == (SIDES[s - 1][0] == 1)
+            result.append((body, grid.T if turn else grid))
+        return result
+
+    def node_at(self, point):
+        """Number, from 1 on, of the node there."""
+        return int(np.linalg.norm(self.points - point, axis=1).argmin()) + 1
+
     def _role(self, begin):
         found = [faces for role, faces in self._faces.items() if re.match(begin, role)]
         if len(found) != 1:
@@ -151,9 +214,20 @@ class PlainCase:
         return found
 
     def pairs(self):
-        """number -> slave faces, master faces, friction coefficient."""
-        return {number: (*(self._role(rf"contact pair {number}\b.*{side}") for side in ("slave", "master")),
-                         pair.get("Friction coefficient", 0)) for number, pair in self.numbered("Contact pair").items()}  # fmt: skip
+        """Of those that open, slide or stick: number -> slave faces, master faces, friction coefficient."""
+        return {number: (*sides, pair.get("Friction coefficient", 0)) for number, pair, *sides in self._all_pairs() if not self._tied(pair)}
+
+    def ties(self):
+        """Of tied pairs: number -> slave faces, master faces."""
+        return {number: sides for number, pair, *sides in self._all_pairs() if self._tied(pair)}
+
+    @staticmethod
+    def _tied(pair):
+        return pair.get("Contact law", "unilateral") == "tied"
+
+    def _all_pairs(self):
+        return [(number, pair, *(self._role(rf"contact pair {number}\b.*{side}") for side in ("slave", "master")))
+                for number, pair in self.numbered("Contact pair").items()]  # fmt: skip
 
     def intervals(self):
         """(begin, end, increments) of each."""
