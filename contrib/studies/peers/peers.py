@@ -2,7 +2,7 @@
 """nodus beside CalculiX, GetFEM and Kratos on cases of the gallery, prm/ironing.prm and the comparison case hertz: the same mesh, elements
 and law, one process and one thread each.
 
-    peers.py [--time-limit S] [--programs PROGRAM,...] [CASE ...]    (default: all)
+    peers.py [--time-limit S] [--programs PROGRAM,...] [--report] [CASE ...]    (default: all)
 
 Writes <case>.csv and ../../doc/gallery/<case>_peers.png (forces over the time) and peers.md; cases that are not named, and programs that are
 not, keep their rows of peers.json. Needs ccx (Debian: calculix-ccx), python3-getfem and, as KRATOS_PYTHON, a Python that has Kratos
@@ -224,12 +224,13 @@ def main():
     parser.add_argument("cases", nargs="*", metavar="CASE", help=", ".join(CASES))
     parser.add_argument("--time-limit", type=int, default=1800, help="CPU seconds of a run of the others")
     parser.add_argument("--programs", default="CalculiX,GetFEM,Kratos", help="beginnings of the others' names (default: %(default)s)")
+    parser.add_argument("--report", action="store_true", help="only write the page again")
     options = parser.parse_args()
     kept, store = {}, os.path.join(HERE, "peers.json")
     if os.path.exists(store):
         with open(store, encoding="utf-8") as file:
             kept = json.load(file)
-    for name in options.cases or CASES:
+    for name in [] if options.report else options.cases or CASES:
         if name not in CASES:
             sys.exit(f"peers.py: there is no case {name}; there are {', '.join(CASES)}")
         kept[name] = measure(name, options.programs.split(","), options.time_limit, kept.get(name, {}))
