@@ -245,14 +245,16 @@ see multipliers as nodal forces $p=M\\lambda$ alone, and the laws of contact and
 that is open has no force, and Coulomb's cone bounds the tangential part of the force by its normal part. Which matrix $M$ stands between force and multiplier is then a
 matter of names. Every rule that integrates $M$, from Gauss 2 to Newton-Cotes 4, and nodal quadrature, which makes it diagonal, have the same
 displacements, mean pressures and statuses in the end: in the tables they differ in no digit but where the area of curved faces of degree 2
-is integrated by different rules (10 for 9.9 %); without friction they take the same iterations, too. So a richer quadrature gains nothing in accuracy or in order.
+is integrated by different rules (10 for 9.9 %); without friction they take the same iterations but for one or two, too. So a richer quadrature gains nothing in accuracy or in order.
 It costs, and not by its points: $M$ couples multipliers, so that they are not eliminated node by node (the condensed solver would have to factorise
 it to find what nodal quadrature gives it), and with friction the statuses of neighbours pull at each other on the way: the plate under load changes 140 statuses for 84, the plate
-that is unloaded 750 to 1058 for 382, the pulled block 2689 to 2775 for 517, with cycles of up to 12 where nodal quadrature has none, and 1.3 to 3.0 times the Newton iterations (1.1 to 4.6 times in Cattaneo and Mindlin's problem). The pulled
-block takes 3.1 to 3.6 times the CPU (78 to 90 s for 25 s; one run each), with little between the rules. What $M$ does change is the multiplier itself:
+that is unloaded 750 to 1058 for 382, the pulled block 2689 to 2775 for 517, with cycles of up to 12 where nodal quadrature has none, and 1.3 to 3.0 times the Newton iterations (1.1 to 3.2 times in Cattaneo and Mindlin's problem). The pulled
+block takes 3.5 to 4.0 times the CPU (85 to 98 s for 25 s; one run each, on a busy machine), with little between the rules. **The overcost of the richer quadrature itself** is small:
+without friction a Newton iteration with consistent weights takes 1.27 to 1.30 times one with nodal quadrature (Hertz, 14 faces, block solver for all, least of two or three runs, which repeat
+within some 10 %), most of it in the solver (1.33 to 1.38 times), and between the rules with the fewest and the most points there are 3 % of that, 3 ms of 300 in the assembly of contact. What $M$ does change is the multiplier itself:
 $\\lambda=M^{-1}p$ oscillates where the pressure ends, and a status that is tested on it contradicts itself there; faceted rings from 24 faces on, all Hertz meshes of degree
 1 and two of three of degree 2 then have no solution. Statuses at the nodes are worth having with nodal quadrature: they change least of all there, less than statuses at
-integration points (188 to 460 and 746 to 1388 in the two plates, of two to four times as many). Gains are to be had where gaps are averaged, not where forces are
+integration points (188 to 460 and 746 to 1384 in the two plates, of two to four times as many). Gains are to be had where gaps are averaged, not where forces are
 integrated: the averaged scheme passes the patch test and has the higher orders, with as many changes as nodal quadrature and about its cost.
 """
 TITLES = {
