@@ -105,7 +105,7 @@ class Deck:
         for begin, end, count in self.case.intervals():
             step = (end - begin) / count
             self.lines += ["*STEP, NLGEOM, INC=10000", f"*STATIC, SOLVER={self.solver}", f"{step:.10g}, {end - begin:.10g}, {1e-6 * step:.3g}, {step:.10g}",
-                           *moved, *prints, "*NODE PRINT, NSET=ALL, FREQUENCY=10000", "U", "*END STEP"]  # fmt: skip
+                           *moved, *prints, "*NODE PRINT, NSET=ALL", "U", "*END STEP"]  # fmt: skip
 
 
 def _forces(path):

@@ -17,8 +17,7 @@ sys.path.insert(0, os.path.dirname(HERE))
 import common  # noqa: E402
 from common import nodus  # noqa: E402
 
-sys.path[:0] = [os.path.join(common.FOLDER, folder) for folder in ("scaling", "robustness")]
-from geometry import depth_below  # noqa: E402
+sys.path.insert(0, os.path.join(common.FOLDER, "scaling"))
 from hertz_case import measured  # noqa: E402
 
 # One thread for each program, that of nodus among them.
@@ -76,11 +75,22 @@ def _element_nodes(cells):
     return np.stack([cells[:, k, j, i] for i, j, k in places], axis=1)
 
 
-def _triangles(grid):
-    """(m, 3, 3) of points (n, n, 3): four around the middle of each quadrilateral."""
-    quads = [grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]]
-    middle = sum(quads) / 4
-    return np.concatenate([np.stack([quads[i], quads[(i + 1) % 4], middle], axis=2).reshape(-1, 3, 3) for i in range(4)])
+def _depth(points, triangles):
+    """Largest depth of a point under the nearest triangle that it is above or below, 0 where there is none within the size of a triangle."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    size = np.sqrt(np.linalg.norm(normal, axis=1))
+    normal /= size[:, None] ** 2
+    deepest = 0.0
+    for point in points:
+        height = ((point - a) * normal).sum(1)
+        foot = point - height[:, None] * normal
+        inside = np.abs(height) < size
+        for s, e in ((a, b), (b, c), (c, a)):
+            inside &= (np.cross(e - s, foot - s) * normal).sum(1) >= -1e-9 * size**2
+        if inside.any():
+            deepest = max(deepest, -min(height[inside], key=abs))
+    return deepest
 
 
 class PlainCase:
@@ -163,34 +173,29 @@ class PlainCase:
         return mesh.fields["displacement"][self._used]
 
     def penetration(self, displacements):
-        """How deep nodes of slave and master faces are under the faces of the other body, at most, in mean sides of slave faces at the start.
+        """How deep nodes of slave and master faces are under faces of the other side of their pair, at most, in mean sides of slave faces at the start.
         Faces of cells of degree 2 are four of degree 1."""
         x, deepest = self.points + displacements, 0.0
-        outside = self._outside()
         for slave, master, _ in self.pairs().values():
             for here, there in ((slave, master), (master, slave)):
                 nodes = np.unique([node for _, face in self.lattice_of(here) for node in face])
-                bodies = {body for body, _ in self.lattice_of(there)}
-                triangles = np.concatenate([_triangles(x[face].reshape(self.degree + 1, -1, 3)) for body, face in outside if body in bodies])
-                deepest = max(deepest, depth_below(x[nodes], triangles).max())
-            area = np.concatenate([_triangles(self.points[face].reshape(self.degree + 1, -1, 3)) for _, face in self.lattice_of(slave)])
-            size = np.sqrt(np.linalg.norm(np.cross(area[:, 1] - area[:, 0], area[:, 2] - area[:, 0]), axis=1).sum() / 2 / len(slave))
-        return deepest / size
+                deepest = max(deepest, _depth(x[nodes], self._triangles(x, there)))
+            triangles = self._triangles(self.points, slave)
+            area = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1).sum() / 2
+        return deepest / np.sqrt(area / len(slave))
 
-    def _outside(self):
-        """Body and nodes of the faces of one cell alone, outwards."""
-        found = {}
-        for e, corners in enumerate(self.elements, 1):
-            for s, face in enumerate(FACES, 1):
-                found.setdefault(frozenset(corners[list(face)]), []).append((e, s))
-        faces = [faces[0] for faces in found.values() if len(faces) == 1]
-        result = []
-        for (body, nodes), (_, s) in zip(self.lattice_of(faces), faces):
-            grid = np.array(nodes).reshape(self.degree + 1, -1)
-            # the second axis of the grid comes first; a face at the end of its axis looks along it
-            turn = (SIDES[s - 1][1] == 1) == (SIDES[s - 1][0] == 1)
-            result.append((body, grid.T if turn else grid))
-        return result
+    def _triangles(self, x, faces):
+        """(m, 3, 3), outwards: four around the middle of each face, or of each quarter of one of degree 2."""
+        found = []
+        for (_, nodes), (_, side) in zip(self.lattice_of(faces), faces):
+            grid = x[nodes].reshape(self.degree + 1, self.degree + 1, 3)
+            axis, end = SIDES[side - 1]
+            if (end == 1) == (axis == 1):  # the second axis of the grid comes first; a face at the end of its axis looks along it
+                grid = grid.transpose(1, 0, 2)
+            quads = [grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]]
+            middle = sum(quads) / 4
+            found += [np.stack([quads[i], quads[(i + 1) % 4], middle], axis=2).reshape(-1, 3, 3) for i in range(4)]
+        return np.concatenate(found)
 
     def node_at(self, point):
         """Number, from 1 on, of the node there."""
