@@ -161,5 +161,5 @@ def run(case, stiffness, stick, folder, time_limit=3600, solver="SPOOLES"):
         "cut-backs": int(np.count_nonzero(failed)),
         **use,
         "forces": _forces(os.path.join(folder, "deck.dat")),
-        "displacements": _displacements(os.path.join(folder, "deck.dat"), len(case.points)),
+        "displacements": _displacements(os.path.join(folder, "deck.dat"), len(case.points)) if finished else None,
     }
