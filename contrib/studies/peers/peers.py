@@ -258,7 +258,7 @@ neo-Hookean law that CalculiX has (hertz: linear elastic), one process and one t
 Runs of the others end at a number of CPU seconds (`--time-limit`; 600 to 1800 here). Forces are those on the driven body; of the double arch it is the displacement of the
 middle of the ring that is compared. *Ripple*: largest distance, peak to peak, of a force on the driven body from a cubic over the time while it slides (ironing: t = 1.2 to
 1.9, ring 1.1 to 1.9, in three dimensions 0.7 to 1.4; press fit 1.7 to 1.95), over its mean. *Penetration*: largest depth of a node under the faces of the other body at the end,
-in sides of slave faces; faces are flat here, so that of rounded surfaces, as nodus has them, something is left; measured in hertz_12 and ironing_ring so far. A force of nodus is of the contact without a stiffness, so CalculiX' differences get smaller with a stiffer contact where that ends.
+in sides of slave faces; faces are flat here, so that of rounded surfaces, as nodus has them, something is left (empty: not measured). A force of nodus is of the contact without a stiffness, so CalculiX' differences get smaller with a stiffer contact where that ends.
 
 {text}""")
 

@@ -12,10 +12,10 @@ import os
 import subprocess
 
 import numpy as np
-from plain_case import common
+from plain_case import common, nodus
 
 CASE = os.path.join(common.ROOT, "prm", "gallery", "punch.prm")
-STEEL, ALUMINIUM, POISSON, FRICTION, LOAD = 210000.0, 70000.0, 0.3, 0.1, 100.0
+LOAD = 100.0
 AXIS = 8.0  # beside it pressures of CalculiX' wedges say nothing
 FOLDER = os.path.join(common.SCRATCH, "peers", "punch")
 
@@ -31,7 +31,7 @@ Curve Loop(2) = {{11 : 16}}; Plane Surface(2) = {{2}};
 Physical Surface("foundation", 1) = {{1}}; Physical Surface("punch", 2) = {{2}};
 Physical Curve("slave", 11) = {{4, 5}}; Physical Curve("master", 12) = {{11, 12}}; Physical Curve("load", 13) = {{15}}; Physical Curve("support", 14) = {{1}};
 Physical Curve("axis", 15) = {{6, 16}};
-Field[1] = MathEval; Field[1].F = "Min(3, {size} + 0.12 * Max(0, Sqrt((x - 40)^2 + y^2) - {fine}))"; Background Field = 1;
+Field[1] = MathEval; Field[1].F = "min(3, {size} + 0.12 * max(0, sqrt((x - 40)^2 + y^2) - {fine}))"; Background Field = 1;
 Mesh.MeshSizeExtendFromBoundary = 0; Mesh.MeshSizeFromPoints = 0; Mesh.Algorithm = 6; Mesh.RecombineAll = 1; Mesh.RecombinationAlgorithm = 2;
 Mesh.MshFileVersion = 2.2;
 """
@@ -41,7 +41,7 @@ def mesh(size):
     """Points (n, 2), cells and sides by the number of their physical group, corners from 1 on."""
     path = os.path.join(FOLDER, "punch")
     with open(path + ".geo", "w", encoding="ascii") as file:
-        file.write(GEOMETRY.format(size=size, fine=8 * size).replace("Min(", "min(").replace("Max(", "max(").replace("Sqrt((x", "sqrt((x"))
+        file.write(GEOMETRY.format(size=size, fine=8 * size))
     subprocess.run(["gmsh", "-2", "-v", "1", path + ".geo", "-o", path + ".msh"], check=True)
     with open(path + ".msh", encoding="ascii") as file:
         lines = iter(file.read().splitlines())
@@ -57,6 +57,9 @@ def mesh(size):
 
 
 def deck(points, cells, sides, stiffness):
+    """Laws and friction are those of the case."""
+    case = nodus.Case.read(CASE, program=common.program())
+    friction = case["Contact pair 1"]["Friction coefficient"]
     lines = ["*NODE, NSET=ALL", *(f"{i}, {x:.12g}, {y:.12g}, 0." for i, (x, y) in enumerate(points, 1))]
     edges, number = {}, 0
     for body, name in ((1, "FOUNDATION"), (2, "PUNCH")):
@@ -69,14 +72,15 @@ def deck(points, cells, sides, stiffness):
                 lines.append(", ".join(map(str, (number, *cell))))
                 for side in range(corners):
                     edges[frozenset((cell[side], cell[(side + 1) % corners]))] = number, side + 1
-    for name, modulus in (("FOUNDATION", ALUMINIUM), ("PUNCH", STEEL)):
-        lines += [f"*MATERIAL, NAME=M{name}", "*ELASTIC", f"{modulus}, {POISSON}", f"*SOLID SECTION, ELSET={name}, MATERIAL=M{name}"]
+    for body, name in ((1, "FOUNDATION"), (2, "PUNCH")):
+        law = case[f"Body {body}"]["Material"]
+        lines += [f"*MATERIAL, NAME=M{name}", "*ELASTIC", "{}, {}".format(law["Young's modulus"], law["Poisson's ratio"]), f"*SOLID SECTION, ELSET={name}, MATERIAL=M{name}"]
     for name, group in (("SLAVE", 11), ("MASTER", 12)):
         lines += [f"*SURFACE, NAME={name}, TYPE=ELEMENT", *("%d, S%d" % edges[frozenset(side)] for side in sides[group])]
     for name, group in (("SUPPORT", 14), ("AXIS", 15)):
         lines += [f"*NSET, NSET={name}", *(f"{node}," for node in sorted({node for side in sides[group] for node in side}))]
     lines += ["*SURFACE INTERACTION, NAME=CONTACT", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{stiffness:g}", "*FRICTION",
-              f"{FRICTION}, {stiffness / 10:g}", "*CONTACT PAIR, INTERACTION=CONTACT, TYPE=SURFACE TO SURFACE", "SLAVE, MASTER", "*BOUNDARY",
+              f"{friction}, {stiffness / 10:g}", "*CONTACT PAIR, INTERACTION=CONTACT, TYPE=SURFACE TO SURFACE", "SLAVE, MASTER", "*BOUNDARY",
               "SUPPORT, 1, 2", "AXIS, 1, 1", "*STEP, NLGEOM, INC=1000", "*STATIC", "0.1, 1., 1e-5, 0.1", "*DLOAD"]  # fmt: skip
     lines += ["%d, P%d, %g" % (*edges[frozenset(side)], LOAD) for side in sides[13]]
     return "\n".join(lines + ["*NODE FILE", "U", "*CONTACT FILE", "CDIS, CSTR", "*END STEP"]) + "\n"
