@@ -1,11 +1,13 @@
 #!/usr/bin/python3
-"""The cup of prm/gallery/deep_drawing.prm in CalculiX, axisymmetric, with quadratic cells.
+"""The cup of prm/gallery/deep_drawing.prm in CalculiX, axisymmetric, with quadratic cells, or a wedge of it in nodus.
 
     deep_drawing.py [--radial N] [--layers L] [--stiffness K]    (MPa/mm, of the contact)
+    deep_drawing.py --wedge [--radial N] [--layers L] [--increments N] [--degree P]
 
 Writes prm/gallery/deep_drawing.csv. The force of CalculiX depends on its increments, and halving them takes half of that away: there are two runs, with
 increments of 0.125 and 0.0625 mm, and the force is extrapolated to none. The tools are meshed and prescribed, the edges of die and punch in 96 facets; the law is read from the case.
-Needs ccx (Debian: calculix-ccx); CCX names the program.
+Needs ccx (Debian: calculix-ccx); CCX names the program. With --wedge: 2 degrees of the cup in one layer of cells, its force on the whole punch is
+printed (needs gmsh).
 """
 
 import argparse
@@ -21,6 +23,7 @@ CASE = os.path.join(common.ROOT, "prm", "gallery", "deep_drawing.prm")
 THICKNESS, RADIUS, TRAVEL = 2.0, 40.0, 25.0
 HOLDER, FRICTION = 20000.0, {"SPUNCH": 0.25, "SHOLDER": 0.125, "SDIE": 0.125}
 FACETS = 96
+WEDGE = 2  # degrees
 # Of the way, at most.
 INCREMENTS = 0.005, 0.0025
 YOUNG, POISSON = "Young's modulus", "Poisson's ratio"
@@ -141,12 +144,39 @@ def forces(folder):
     return np.array([(TRAVEL * (float(time) - 1), -180 * float(force)) for time, force in found if float(time) > 1])
 
 
+def wedge(radial, layers, increments, degree):
+    """Way of the punch [mm] and force on it [N]."""
+    folder = os.path.join(common.SCRATCH, "peers", f"deep_drawing_wedge_{radial}_{layers}_{increments}_{degree}")
+    os.makedirs(folder, exist_ok=True)
+    mesh = os.path.join(folder, "wedge.msh")
+    numbers = [word for name, value in (("wedge", WEDGE), ("r", radial), ("l", layers), ("o", degree)) for word in ("-setnumber", name, str(value))]
+    subprocess.run(["gmsh", "-3", "-v", "2", os.path.splitext(CASE)[0] + ".geo", *numbers, "-o", mesh], check=True)
+    case, angle = nodus.Case.read(CASE, program=common.program()), math.radians(WEDGE)
+    for body in range(1, 5):
+        case[f"Body {body}/Mesh file"] = mesh
+    case["Body 4/Rigid force"] = f"0; 0; -{HOLDER * WEDGE / 360}*min(t,1)"
+    case["Boundary condition 1"] = {"Name": "inclined symmetry", "Type": "spring", "Body": "blank", "Boundary ids": "x_symmetry",
+                                    "Direction": [-math.sin(angle), math.cos(angle), 0], "Value": "1e8"}  # fmt: skip
+    case["Boundary condition 3"] = {"Name": "axis", "Body": "blank", "Where": "x^2+y^2<0.51^2", "Components": "x, y", "Value": "0"}
+    case["Load stepping/Increments"] = [1, increments]
+    case["Discretization/Degree"] = degree
+    rows = case.run(os.path.join(folder, "results"), check=False).masters.where(body="punch")
+    return np.column_stack([TRAVEL * (rows["time"] - 1), 360 / WEDGE * rows["force z"]])[rows["time"] > 1]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--radial", type=int, default=60)
     parser.add_argument("--layers", type=int, default=3)
     parser.add_argument("--stiffness", type=float, default=5e4)
+    parser.add_argument("--wedge", action="store_true")
+    parser.add_argument("--increments", type=int, default=100)
+    parser.add_argument("--degree", type=int, default=1)
     options = parser.parse_args()
+    if options.wedge:
+        for way, force in wedge(options.radial, options.layers, options.increments, options.degree):
+            print(f"{way:.4g} {force:.6g}")
+        return
     runs = [run(options.radial, options.layers, options.stiffness, increment) for increment in INCREMENTS]
     ways = np.arange(0.25, min(r[-1, 0] for r in runs) + 1e-6, 0.25)
     coarse, fine = (np.interp(ways, *r.T) for r in runs)

@@ -43,6 +43,10 @@ def _ring(n):
             "Body 2/Generator arguments": f"0.2 : 0.6 : 1 : {9 * n // 2} : 1"}  # fmt: skip
 
 
+# Until the upper tube touches itself: its lower half on the lower tube.
+TUBES = {"Contact pair 1/Self contact": "false", "Contact pair 1/Slave body": "upper", "Contact pair 1/Master body": "lower",
+         "Contact pair 1/Slave where": "y<24 && (y-24)^2+z^2>11.9^2", "Contact pair 1/Master where": "x^2+y^2>11.9^2",
+         "Load stepping/Interval ends": "0.75", "Load stepping/Increments": "30"}  # fmt: skip
 ONE = {"Load stepping/Interval ends": "1", "Load stepping/Increments": "1"}
 # File in prm/ or number of cells of hertz, keys, condition whose forces are compared, or point whose displacements are; contact stiffness of CalculiX in the
 # soft body's modulus over length: as a user, as an expert; how far GetFEM looks for the other surface: less than the thickness of a body.
@@ -57,6 +61,7 @@ CASES = {
     "double_arch": ("gallery/double_arch.prm", {}, (0, 10, 0), (1, 10), 4.0),
     "double_arch_0": ("gallery/double_arch.prm", {"Contact pair 1/Friction coefficient": "0"}, (0, 10, 0), (1, 10), 4.0),
     "press_fit": ("gallery/press_fit.prm", _cells(2), 2, (1, 10), 100.0),
+    "crossed_tubes": ("gallery/crossed_tubes.prm", {**_cells(2), **TUBES}, 2, (1, 10), 0.6),
 }  # fmt: skip
 HEADER = ["case", "unknowns", "program", "to t =", "increments", "cut back", "Newton iterations", "CPU s", "/ nodus", "peak MiB",
           "largest difference of forces until there", "ripple", "penetration"]  # fmt: skip
