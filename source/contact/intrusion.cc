@@ -168,26 +168,18 @@ namespace Nodus
       /// Of all ranks. Collective.
       Intrusion result() const
       {
-        const auto node = [](const Intrusion::Node &n) {
-          return std::array<double, dim + 1>{{n.X[0], n.X[1], n.X[2], n.side == slave_side ? 0. : 1.}};
-        };
-        const auto take = [](const std::array<double, dim + 1> &n) {
-          return Intrusion::Node{Point(n[0], n[1], n[2]), n[dim] == 0. ? slave_side : master_side};
-        };
-        const auto all = all_gather(communicator_,
-                                    std::make_pair(std::make_pair(found_.depth, node(found_.deepest)),
-                                                   std::make_pair(found_.passed, node(found_.first_passed))));
-        Intrusion  result;
-        for (const auto &[deepest, passed] : all)
+        Intrusion result;
+        for (const Intrusion &found : all_gather(communicator_, found_))
         {
-          if (deepest.first > result.depth)
-          {
-            result.depth   = deepest.first;
-            result.deepest = take(deepest.second);
-          }
-          if (passed.first > 0 && result.passed == 0)
-            result.first_passed = take(passed.second);
-          result.passed += passed.first;
+          for (const SurfaceSide side : {slave_side, master_side})
+            if (found.depth[side] > result.depth[side])
+            {
+              result.depth[side]   = found.depth[side];
+              result.deepest[side] = found.deepest[side];
+            }
+          if (found.passed > 0 && result.passed == 0)
+            result.first_passed = found.first_passed;
+          result.passed += found.passed;
         }
         return result;
       }
@@ -274,10 +266,10 @@ namespace Nodus
 
       void note(const unsigned int node, const SurfaceSide side, const double depth, const bool passed)
       {
-        if (depth > found_.depth)
+        if (depth > found_.depth[side])
         {
-          found_.depth   = depth;
-          found_.deepest = {surfaces_.nodes()[node].X, side};
+          found_.depth[side]   = depth;
+          found_.deepest[side] = surfaces_.nodes()[node].X;
         }
         if (passed && found_.passed++ == 0)
           found_.first_passed = {surfaces_.nodes()[node].X, side};

@@ -5,6 +5,7 @@
 
 #include <deal.II/base/bounding_box.h>
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -18,10 +19,18 @@ namespace Nodus
       Point       X; ///< reference position
       SurfaceSide side = slave_side;
     };
-    double       depth = 0.; ///< largest, of nodes that were not as deep before; 0: none is behind [length]
-    Node         deepest;
+    /// Largest of slave and of master nodes that were not as deep before; 0: none is behind [length].
+    std::array<double, 2> depth{{0., 0.}};
+    std::array<Point, 2>  deepest; ///< reference positions
     unsigned int passed = 0; ///< nodes that have gone through the other surface, those of several ranks more than once
     Node         first_passed;
+
+    /// For messages between ranks.
+    template <typename Archive>
+    void serialize(Archive &archive, unsigned int)
+    {
+      archive &depth &deepest &passed &first_passed.X &first_passed.side;
+    }
   };
 
   /// A node that is behind the other surface of its pair.

@@ -49,21 +49,16 @@ namespace Nodus
 
   double SurfaceGeometry::bulge() const
   {
-    const unsigned int n     = degree_ + 1;
-    double             bulge = 0.;
-    const auto         rise  = [&](const unsigned int f, const unsigned int a, const unsigned int b)
-    {
-      const Vector3 chord = positions_[faces_[f].nodes[b]] - positions_[faces_[f].nodes[a]];
-      bulge               = std::max(bulge, std::abs(chord * (nodal_normal(f, b) - nodal_normal(f, a))) / 8.);
-    };
+    const unsigned int last = degree_ * (degree_ + 2); // node of a face
+    double             rise = 0.;
     for (unsigned int f = 0; f < faces_.size(); ++f)
-      for (unsigned int j = 0; j < n; ++j)
-        for (unsigned int i = 0; i + 1 < n; ++i)
-        {
-          rise(f, n * j + i, n * j + i + 1);
-          rise(f, n * i + j, n * (i + 1) + j);
-        }
-    return bulge;
+      for (const auto &[a, b] :
+           {std::make_pair(0u, degree_), {last - degree_, last}, {0u, last - degree_}, {degree_, last}})
+      {
+        const Vector3 chord = positions_[faces_[f].nodes[b]] - positions_[faces_[f].nodes[a]];
+        rise                = std::max(rise, std::abs(chord * (nodal_normal(f, b) - nodal_normal(f, a))));
+      }
+    return rise / (8. * degree_ * degree_);
   }
 
   dealii::Tensor<2, dim> cross_matrix(const Vector3 &v)

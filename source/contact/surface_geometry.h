@@ -119,8 +119,8 @@ namespace Nodus
       return nodal_normals_[f * faces_[f].nodes.size() + n];
     }
 
-    /// How far an arc that meets the normals of neighbouring nodes of a face rises above the line between them, at
-    /// most: what facets cut off from a curved surface [length]. Of the faces of this rank.
+    /// How far an arc that meets the normals at the ends of an edge of a face rises above the lines between its nodes,
+    /// at most: what facets cut off from a curved surface [length]. Of the faces of this rank.
     double bulge() const;
 
     /// Whether this is a copy of another one, or the other way round.

@@ -26,9 +26,18 @@ namespace Nodus
     constexpr double body_tolerance = 1e-6, pair_force_tolerance = 1e-9, pair_moment_tolerance = 1e-8;
     /// Of contradicted statuses, of the largest pressure or of the cone.
     constexpr double status_tolerance = 1e-3;
-    /// Of the mean face of the side with the smaller ones; and in a pair without a closed site, where facets of curved
-    /// surfaces may overlap by what they cut off, but nothing may be pressed in; never by more than in contact.
-    constexpr double tolerated_depth = 0.25, tolerated_unseen_depth = 0.05;
+    /// Of the mean face of the side with the smaller ones, with what facets of curved surfaces may overlap by: the arcs
+    /// that they cut off.
+    constexpr double largest_depth = 0.25;
+    /// ... and without, in a pair without a closed site, where nothing may be pressed in.
+    constexpr double tolerated_unseen_depth = 0.05;
+
+    /// ... and in contact: the nodal scheme lets smaller faces of a master come in between nodes, means hold them
+    /// better.
+    double tolerated_depth(const ContactPairParameters &pair)
+    {
+      return pair.scheme == ContactPairParameters::Scheme::nodal ? 0.2 : 0.1;
+    }
     /// Of the mean face of the side with the larger ones, where displacements of both sides are prescribed: facets of
     /// curved surfaces overlap a little.
     constexpr double tolerated_held_depth = 1e-2, tolerated_held_slip = 1e-6;
@@ -327,8 +336,8 @@ namespace Nodus
     std::vector<Vector3> before, now;
     surfaces.gather(states_.committed.unknowns.block(0), before);
     surfaces.gather(unknowns_.block(0), now);
-    std::vector<double> adjusted(surfaces.n_pairs(), 0.), tolerated; // where surfaces are apart or inside by intent
-    std::vector<double> bulge;                                       // that faces of the larger size cut off
+    std::vector<double>       adjusted(surfaces.n_pairs(), 0.); // where surfaces are apart or inside by intent
+    std::vector<double>       deepest, bulges;                  // that may be; of slave and master faces of each pair
     std::vector<unsigned int> closed(surfaces.n_pairs(), 0);
     const std::vector<double> overclosures =
         site_overclosures(surfaces, contact_->status(), contact_->pressure(), contact_->state().lambda);
@@ -342,42 +351,44 @@ namespace Nodus
     dealii::Utilities::MPI::sum(closed, model_.communicator, closed);
     for (unsigned int p = 0; p < adjusted.size(); ++p)
     {
-      tolerated.push_back(tolerated_depth * smaller_face_[p] + adjusted[p]);
-      const auto squared = [&](const double face) { return std::pow(larger_face_[p] / face, 2); };
-      bulge.push_back(std::min(contact_->geometry()->slave[p].bulge() * squared(surfaces.face_size(p)) +
-                                   contact_->geometry()->master[p].bulge() * squared(surfaces.master_face_size(p)),
-                               (tolerated_depth - tolerated_unseen_depth) * smaller_face_[p]));
+      deepest.push_back(largest_depth * smaller_face_[p] + adjusted[p]);
+      bulges.push_back(contact_->geometry()->slave[p].bulge());
+      bulges.push_back(contact_->geometry()->master[p].bulge());
     }
-    dealii::Utilities::MPI::max(bulge, model_.communicator, bulge);
+    dealii::Utilities::MPI::max(bulges, model_.communicator, bulges);
 
     const Increment             &increment  = equilibrium_.increment();
     const std::vector<Intrusion> intrusions = find_intrusions(
-        surfaces, surfaces.positions(before), surfaces.positions(now), increment.begin, increment.end, tolerated);
+        surfaces, surfaces.positions(before), surfaces.positions(now), increment.begin, increment.end, deepest);
     Verdict::Finding &depth = verdict[Measure::penetration], &unseen = verdict[Measure::unseen_depth],
                      &passed = verdict[Measure::passed];
-    depth.tolerance          = tolerated_depth;
+    depth.tolerance          = largest_depth;
     unseen.tolerance         = tolerated_unseen_depth;
     for (unsigned int p = 0; p < intrusions.size(); ++p)
     {
-      const auto &pair = model_.parameters.contact_pairs[p];
+      const auto      &pair      = model_.parameters.contact_pairs[p];
+      const Intrusion &intrusion = intrusions[p];
       if (pair.contact_law == ContactPairParameters::ContactLaw::tied)
         continue;
-      const auto raise = [&](Verdict::Finding &finding, const double value, const Intrusion::Node &node)
+      const auto where = [&](const SurfaceSide side, const Point &X)
       {
-        if (value > finding.value)
-          finding.raise(value,
-                        std::string(node.side == slave_side ? "slave" : "master") + " node " + coordinates(node.X) +
-                            " of " + pair_label(model_.parameters.contact_pairs, p),
-                        p);
+        return std::string(side == slave_side ? "slave" : "master") + " node " + coordinates(X) + " of " +
+               pair_label(model_.parameters.contact_pairs, p);
       };
-      const Intrusion &intrusion = intrusions[p];
-      const double     inside    = intrusion.depth - adjusted[p];
-      if (closed[p] > 0)
-        raise(depth, inside / smaller_face_[p], intrusion.deepest);
-      else
-        raise(unseen, (inside - bulge[p]) / smaller_face_[p], intrusion.deepest);
+      const double      tolerance = closed[p] > 0 ? tolerated_depth(pair) : tolerated_unseen_depth;
+      Verdict::Finding &finding   = closed[p] > 0 ? depth : unseen;
+      // smaller faces of a master bulge over those of the slave, which see their mean
+      const double ratio = std::max(1., surfaces.face_size(p) / surfaces.master_face_size(p));
+      for (const SurfaceSide side : {slave_side, master_side})
+      {
+        const double rise    = bulges[2 * p] + bulges[2 * p + 1] * (side == slave_side ? 1. : ratio * ratio);
+        const double overlap = std::min(rise, (largest_depth - tolerance) * smaller_face_[p]);
+        const double value   = (intrusion.depth[side] - adjusted[p] - overlap) / smaller_face_[p];
+        if (value / tolerance > finding.value / finding.tolerance)
+          finding = {value, tolerance, where(side, intrusion.deepest[side]), p};
+      }
       if (intrusion.passed > 0)
-        raise(passed, passed.value + intrusion.passed, intrusion.first_passed);
+        passed.raise(passed.value + intrusion.passed, where(intrusion.first_passed.side, intrusion.first_passed.X), p);
     }
   }
 } // namespace Nodus

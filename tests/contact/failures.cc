@@ -192,6 +192,18 @@ int main(int argc, char **argv)
   small.contact_pairs[0].scheme       = ContactPairParameters::Scheme::nodal;
   check_words("nor is a ball in the middle of its face", outcome(small), {"penetration unseen", "master node ("});
 
+  // A slave face that feels the master at one pair of its points alone tilts, and comes up beyond the master's rim: by
+  // 0.07 and 0.14 faces of the master.
+  auto rim                            = punch;
+  rim.bodies[1]                       = box("punch", "7,10,1", {0, 0, 1}, {0.7, 1, 1.2}, 1e6, 0.3);
+  rim.contact_pairs[0].scheme         = ContactPairParameters::Scheme::integration_point;
+  rim.boundary_conditions[1].value[2] = "-0.01*t";
+  check("a coarse slave comes up a little beyond the rim of its master", outcome(rim) == "no failure");
+  rim.boundary_conditions[1].value[2] = "-0.02*t";
+  check_words("  but not by more than a tenth of a face",
+              outcome(rim),
+              {"penetration depth", "tolerance 0.1,", "master node (0.7", "of Contact pair 1 ('pair')"});
+
   // A rigid ball is driven through a sheet, from above it to below it, in one increment.
   auto thrown                   = p;
   thrown.bodies                 = {box("sheet", "4,4,1", {0, 0, 0}, {1, 1, 0.1}, 100, 0.3)};
