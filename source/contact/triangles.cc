@@ -300,20 +300,48 @@ namespace Nodus
     return !height.behind || height.distance <= visible;
   }
 
+  void Triangles::follow_face(const Triangle &triangle, const Point &p, Height &height) const
+  {
+    const SurfaceFace &face   = *triangle.face;
+    const unsigned int degree = face.nodes.size() == 4 ? 1 : 2;
+    const auto         share  = closest_point(p, x_[triangle.nodes[0]], x_[triangle.nodes[1]], x_[triangle.nodes[2]]);
+    double             xi = 0., eta = 0.;
+    Vector3            flat;
+    for (unsigned int v = 0; v < 3; ++v)
+    {
+      const unsigned int n = std::find(face.nodes.begin(), face.nodes.end(), triangle.nodes[v]) - face.nodes.begin();
+      xi += share[v] * (n % (degree + 1)) / degree;
+      eta += share[v] * (n / (degree + 1)) / degree;
+      flat += share[v] * x_[triangle.nodes[v]];
+    }
+    const double rise    = (FaceGeometry(face, FaceShape(degree, xi, eta), x_).x - flat) * height.normal;
+    const double outside = (height.behind ? -height.distance : height.distance) - rise;
+    height.distance      = std::abs(outside);
+    height.behind        = outside < 0.;
+  }
+
   Height Triangles::height(const Point &p, const double reach, const OwnNode &own) const
   {
-    Height nearest;
-    nearest.distance = reach;
+    Height       nearest;
+    unsigned int triangle = 0;
+    nearest.distance      = reach;
     tree_.nearest(p,
                   reach * reach,
                   [&](const unsigned int t, double)
                   {
                     const Height here = height(triangles_[t], p);
                     if (here.distance < nearest.distance && (own.nodes.empty() || counts(triangles_[t], here, own)))
-                      nearest = here;
+                    {
+                      nearest  = here;
+                      triangle = t;
+                    }
                     return nearest.distance * nearest.distance;
                   });
-    return nearest.distance < reach ? nearest : Height();
+    if (!(nearest.distance < reach))
+      return Height();
+    if (nearest.over)
+      follow_face(triangles_[triangle], p, nearest);
+    return nearest;
   }
 
   std::vector<std::vector<Crossing>> Triangles::crossings(const std::vector<Way>     &ways,

@@ -60,8 +60,9 @@ namespace Nodus
 
   struct SurfaceNode;
 
-  /// Faces of a surface as triangles between their nodes, two for each face or for each quarter of one of degree 2:
-  /// plain geometry that can judge what pairing, smoothing and averages make of the same faces.
+  /// Faces of a surface as triangles between their nodes, two for each face or for each quarter of one of degree 2,
+  /// from which heights are corrected for the curvature and the twist of the face: plain geometry that can judge what
+  /// pairing, smoothing and averages make of the same faces.
   class Triangles
   {
   public:
@@ -93,7 +94,8 @@ namespace Nodus
     /// The least that OwnNode::visible is on this rank; infinite without nodes.
     double least_visible() const;
 
-    /// Where @p p is; the distance is infinite where that is farther than @p reach.
+    /// Where @p p is, from the face behind the nearest triangle; the distance is infinite where that is farther than @p
+    /// reach.
     Height height(const Point &p, double reach, const OwnNode &own) const;
     /// Crossings of every way with the triangles, which come from @p before; in no order, and twice where a way goes
     /// through an edge. @p own: of each way.
@@ -108,6 +110,9 @@ namespace Nodus
       const SurfaceFace          *face;
     };
     Height height(const Triangle &triangle, const Point &p) const;
+    /// From a triangle to the face that it is of, which may be curved or twisted, along the normal at the point nearest
+    /// to @p p.
+    void follow_face(const Triangle &triangle, const Point &p, Height &height) const;
     void know_nodes(const std::vector<SurfaceFace> &faces, unsigned int degree, const std::vector<SurfaceNode> &nodes);
     bool is_at(const Triangle &triangle, const OwnNode &own) const;
     bool may_meet(const Triangle &triangle, const OwnNode &own) const;
