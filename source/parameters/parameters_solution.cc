@@ -107,7 +107,7 @@ namespace Nodus
           "Linear solver [-]: direct is MUMPS; condensed eliminates multipliers and held slave displacements and "
           "needs conjugate gradients with algebraic multigrid (large models); block is GMRES on all unknowns, "
           "for what cannot be condensed: integration points and consistent weights. automatic takes direct up to "
-          "1500 displacements, from 20000 on condensed, or block where that is needed, and between them whichever "
+          "1500 displacements, from 150000 on condensed, or block where that is needed, and between them whichever "
           "costs less.");
       prm.add_parameter("Tolerance",
                         solver.tolerance,

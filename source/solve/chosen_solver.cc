@@ -1,18 +1,24 @@
 #include "solve/chosen_solver.h"
+#include "solve/direct_solver.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace Nodus
 {
   namespace
   {
-    /// Displacements up to which the direct solver steps in.
-    constexpr DoFIndex largest_direct = 150000;
-    /// Iterations after which a direct solution is cheaper in models that have the choice.
+    /// Displacements up to which a direct solution costs no more than 3 to 7 iterative ones
+    /// (contrib/studies/scaling/size.md).
+    constexpr DoFIndex largest_moderate = 20000;
+    /// Iterations after which a direct solution is cheaper there.
     constexpr unsigned int most_iterations = 100;
-    /// Systems that the iterative solver gets before its mean is compared: the first one pays for the hierarchy of
-    /// several.
-    constexpr unsigned int trial = 3;
+    /// The analysis of the direct solver may take this part of what was spent before.
+    constexpr double part_of_estimate = 0.1;
+    /// Systems that the iterative solver gets before its mean is compared, for the first one pays for the hierarchy of
+    /// several; it gets no more where it costs so many times what the direct one does, nor does a system count for more.
+    constexpr unsigned int trial    = 3;
+    constexpr double       hopeless = 2.;
     /// Weight of the last system in that mean.
     constexpr double weight = 0.3;
     /// Systems of the direct solver after which the iterative one is tried again at the latest.
@@ -26,6 +32,7 @@ namespace Nodus
                              Profile                                        &profile,
                              const std::function<void(const std::string &)> &remark)
       : choice_(solver_choice(parameters, layout.n_u))
+      , moderate_(choice_.open() && layout.n_u <= largest_moderate)
       , parameters_(parameters.linear_solver)
       , rescue_(rescue)
       , layout_(layout)
@@ -34,15 +41,17 @@ namespace Nodus
   {
     profile_         = &profile;
     parameters_.type = choice_.iterative;
-    if (choice_.open() && rescue)
+    if (moderate_ && rescue)
       parameters_.maximum_iterations = std::min(parameters_.maximum_iterations, most_iterations);
   }
 
-  LinearSolver &ChosenSolver::direct()
+  ChosenSolver::~ChosenSolver() = default;
+
+  DirectSolver &ChosenSolver::direct()
   {
     if (!direct_)
     {
-      direct_ = make_linear_solver(LinearSolverParameters(), layout_, {});
+      direct_ = std::make_unique<DirectSolver>(layout_);
       direct_->set_profile(profile_);
     }
     return *direct_;
@@ -60,11 +69,12 @@ namespace Nodus
 
   bool ChosenSolver::takes_direct() const
   {
-    if (!choice_.open())
-      return choice_.direct || failed_;
-    if (cut_back_ || direct_work_ == 0.)
+    if (failed_ || !choice_.open())
+      return failed_ || choice_.direct;
+    if (moderate_ && cut_back_)
       return true;
-    return iterative_work_ > direct_work_ && (uses_direct_ ? in_a_row_ < wait_ : in_a_row_ >= trial);
+    return direct_work_ > 0. && iterative_work_ > direct_work_ &&
+           (uses_direct_ ? in_a_row_ < wait_ : in_a_row_ >= trial || iterative_work_ >= hopeless * direct_work_);
   }
 
   void ChosenSolver::count(const double work, const bool of_direct)
@@ -73,8 +83,28 @@ namespace Nodus
     if (of_direct && !uses_direct_)
       wait_ = std::min(2 * wait_, longest_wait);
     else if (!of_direct)
-      iterative_work_ = in_a_row_ == 1 ? work : (1. - weight) * iterative_work_ + weight * work;
+    {
+      const double counted = direct_work_ > 0. ? std::min(work, hopeless * direct_work_) : work;
+      iterative_work_      = in_a_row_ == 1 ? counted : (1. - weight) * iterative_work_ + weight * counted;
+      spent_ += work;
+    }
     uses_direct_ = of_direct;
+  }
+
+  void ChosenSolver::estimate_direct(const LinearSystem &system)
+  {
+    if (!choice_.open() || direct_work_ > 0. || DirectSolver::work_of_estimate(system) > part_of_estimate * spent_)
+      return;
+    try
+    {
+      direct_work_ = direct().estimate(system);
+    }
+    catch (const SolverFailure &)
+    {
+      direct_work_ = HUGE_VAL;
+    }
+    if (direct_work_ > iterative_work_)
+      direct_.reset(); // it has taken memory
   }
 
   LinearSolver::Report ChosenSolver::solve(const LinearSystem                     &system,
@@ -84,11 +114,13 @@ namespace Nodus
   {
     const bool direct_in_use = takes_direct();
     last_is_direct_          = direct_in_use;
+    double spent             = 0.; // in vain
     if (!direct_in_use)
       try
       {
         const Report report = iterative().solve(system, rhs, solutions, relative_tolerance);
         count(report.work, false);
+        estimate_direct(system);
         return report;
       }
       catch (const SolverFailure &failure)
@@ -96,7 +128,8 @@ namespace Nodus
         if (!rescue_ || layout_.n_u > largest_direct)
           throw;
         last_is_direct_ = true;
-        if (!choice_.open())
+        spent           = iterative_work(system, 1, parameters_.maximum_iterations);
+        if (!moderate_)
         {
           failed_ = true;
           remark_(std::string(failure.what()) +
@@ -104,12 +137,9 @@ namespace Nodus
         }
       }
     const Report report = direct().solve(system, rhs, solutions, relative_tolerance);
-    const bool   known  = direct_work_ > 0.;
     direct_work_        = report.work;
-    if (!choice_.open() || !known || cut_back_)
-      return report; // costs had no say
-    count(direct_in_use ? report.work : iterative_work_ + report.work,
-          direct_in_use); // that of both where one has failed
+    if (direct_in_use ? !failed_ && !(moderate_ && cut_back_) : moderate_) // costs had a say
+      count(spent + report.work, direct_in_use);
     return report;
   }
 
@@ -117,7 +147,7 @@ namespace Nodus
   {
     if (last_is_direct_)
       return direct().solve_again(system, rhs, solution);
-    if (!choice_.open())
+    if (!moderate_)
       return false;
     constexpr double tolerance = 0.1;
     try

@@ -9,17 +9,20 @@
 
 namespace Nodus
 {
+  class DirectSolver;
+
   /// The linear solver that the parameters ask for.
   ///
-  /// With Type = automatic small models take the direct one, large ones the iterative one. Those between take whichever
-  /// costs less: the first system goes to the direct one and the second to the other; the one that costs more is tried
-  /// again after a number of systems that doubles each time. Costs are counted (LinearSolver::Report::work), not timed,
-  /// so that a run can be repeated to the last digit. Where an increment was cut back systems go to the direct one,
-  /// which says more about them.
+  /// With Type = automatic small models take the direct one and very large ones the iterative one. Those between begin
+  /// with the iterative one, and take whichever costs less once the direct one is known by its symbolic analysis, which
+  /// is made when ten times what it takes was spent; the iterative one is tried again after a number of systems that
+  /// doubles each time. Costs are counted (LinearSolver::Report::work), not timed, so that a run can be repeated to the
+  /// last digit. In models of moderate size systems of an increment that was cut back go to the direct one, which says
+  /// more about them.
   ///
-  /// Where an iterative solver fails the direct one steps in, if the system is not too large for that. Where there is a
-  /// choice the cost of both counts for the iterative one; otherwise the direct one stays until begin_increment(),
-  /// because the next systems are no easier.
+  /// Where an iterative solver fails the direct one steps in, if the system is not too large for that. In models of
+  /// moderate size with a choice the cost of both counts for the iterative one; otherwise the direct one stays until
+  /// begin_increment(), because the next systems are no easier.
   class ChosenSolver : public LinearSolver
   {
   public:
@@ -31,6 +34,7 @@ namespace Nodus
                  DisplacementNodes                               nodes,
                  Profile                                        &profile,
                  const std::function<void(const std::string &)> &remark);
+    ~ChosenSolver() override;
 
     /// @param cut_back from a longer one, which failed
     void begin_increment(const bool cut_back)
@@ -49,26 +53,32 @@ namespace Nodus
                  const std::vector<const BlockVector *> &rhs,
                  std::vector<BlockVector>               &solutions,
                  double                                  relative_tolerance) override;
-    /// Where the iterative solver was chosen it solves to a tenth: that is enough to tell an instability.
+    /// Where the iterative solver was chosen in a model of moderate size it solves to a tenth: that is enough to tell
+    /// an instability.
     bool solve_again(const LinearSystem &system, const BlockVector &rhs, BlockVector &solution) override;
 
   private:
     bool          takes_direct() const;
-    LinearSolver &direct();
+    DirectSolver &direct();
     LinearSolver &iterative();
     void          count(double work, bool of_direct);
+    /// Looks at what the direct solver would take, where that is worth its cost.
+    void estimate_direct(const LinearSystem &system);
 
-    const LinearSolverChoice                 choice_;
-    LinearSolverParameters                   parameters_; ///< of the iterative solver
-    bool                                     rescue_;
-    const BlockLayout                       &layout_;
-    DisplacementNodes                        nodes_; ///< until the iterative solver takes them
+    const LinearSolverChoice choice_;
+    const bool               moderate_;   ///< size: a direct solution is never dear, and there is a choice
+    LinearSolverParameters   parameters_; ///< of the iterative solver
+    bool                     rescue_;
+    const BlockLayout       &layout_;
+    DisplacementNodes        nodes_; ///< until the iterative solver takes them
     std::function<void(const std::string &)> remark_;
-    std::unique_ptr<LinearSolver>            direct_, iterative_; ///< once they were needed
-    bool                                     failed_   = false;   ///< the iterative one has, in this increment
+    std::unique_ptr<DirectSolver>            direct_; ///< once they were needed
+    std::unique_ptr<LinearSolver>            iterative_;
+    bool                                     failed_   = false; ///< the iterative one has, in this increment
     bool                                     cut_back_ = false;
     bool         uses_direct_ = false, last_is_direct_ = false; ///< of those to choose from; for the last system
     double       direct_work_ = 0., iterative_work_ = 0.;       ///< of a system; 0: unknown
+    double       spent_    = 0.;                                ///< by the iterative one so far
     unsigned int in_a_row_ = 0;                                 ///< systems that the one in use has solved
     unsigned int wait_     = 8;                                 ///< systems until the iterative one is tried again
   };

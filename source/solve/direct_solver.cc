@@ -61,9 +61,9 @@ namespace Nodus
       return code == -8 || code == -9 || code == -11 || code == -14 || code == -15 || (code <= -17 && code >= -20);
     }
 
-    /// Of LinearSolver::Report::work, fitted to models of 2000 to 52000 displacements: analysis, assembly of small
-    /// fronts and substitutions; operations of the elimination.
-    constexpr double work_per_entry = 0.2, work_per_operation = 1. / 12000.;
+    /// Of LinearSolver::Report::work, fitted to models of 2000 to 52000 displacements: entries that are gathered and
+    /// analysed; those, with assembly of small fronts and substitutions; operations of the elimination.
+    constexpr double work_per_analysed_entry = 0.15, work_per_entry = 0.3, work_per_operation = 1. / 12000.;
 
     double norm(const std::vector<double> &v)
     {
@@ -208,9 +208,19 @@ namespace Nodus
     return dealii::Utilities::MPI::max(changed ? 1 : 0, communicator_) != 0;
   }
 
-  void DirectSolver::factorise(const bool pattern_changed)
+  void DirectSolver::analyse(const LinearSystem &system, const FlatVectors &flat)
   {
-    const auto timer = time_set_up();
+    if (system.layout->size() >= static_cast<DoFIndex>(std::numeric_limits<int>::max()))
+      throw SolverFailure("Direct solver: too many unknowns for MUMPS, use 'Type = block'.",
+                          SolverFailure::Kind::linear_solver);
+    const bool same_size = size_ == static_cast<int>(system.layout->size());
+    size_                = system.layout->size();
+    if (symmetric_ != system.symmetric)
+      instance_.reset(); // MUMPS takes the kind of matrix once
+    symmetric_ = system.symmetric;
+
+    const bool pattern_changed = collect_entries(system, flat) || !same_size;
+    const auto timer           = time_set_up();
     if (!instance_)
       instance_ = std::make_unique<Instance>(communicator_, symmetric_);
     DMUMPS_STRUC_C &mumps = instance_->mumps;
@@ -223,30 +233,53 @@ namespace Nodus
     mumps.irn_loc = coupled_.row.data(); // entries in row 0 count as out of range, and are left out
     mumps.jcn_loc = coupled_.column.data();
     mumps.a_loc   = value_.data();
-
-    bool success = true;
     if (pattern_changed || !instance_->analysed)
     {
-      success             = instance_->run(1);
-      instance_->analysed = success;
+      instance_->analysed = false;
+      if (!instance_->run(1))
+        give_up();
+      instance_->analysed = true;
     }
-    if (success)
+  }
+
+  void DirectSolver::factorise()
+  {
+    const auto             timer        = time_set_up();
+    constexpr unsigned int max_attempts = 6;
+    bool                   success      = instance_->run(2);
+    for (unsigned int i = 1; i < max_attempts && !success && asks_for_more_space(instance_->mumps); ++i)
     {
-      constexpr unsigned int max_attempts = 6;
-      success                             = instance_->run(2);
-      for (unsigned int i = 1; i < max_attempts && !success && asks_for_more_space(mumps); ++i)
-      {
-        icntl(mumps, 14) *= 2;
-        success = instance_->run(2);
-      }
+      icntl(instance_->mumps, 14) *= 2;
+      success = instance_->run(2);
     }
     if (!success)
-    {
-      const std::string message =
-          "Direct solver: MUMPS error " + std::to_string(infog(mumps, 1)) + ": " + meaning(mumps) + ".";
-      instance_.reset(); // gives the memory back; the next system starts afresh
-      throw SolverFailure(message, SolverFailure::Kind::linear_solver);
-    }
+      give_up();
+  }
+
+  void DirectSolver::give_up()
+  {
+    const std::string message = "Direct solver: MUMPS error " + std::to_string(infog(instance_->mumps, 1)) + ": " +
+                                meaning(instance_->mumps) + ".";
+    instance_.reset(); // gives the memory back; the next system starts afresh
+    throw SolverFailure(message, SolverFailure::Kind::linear_solver);
+  }
+
+  double DirectSolver::work(const double n_operations) const
+  {
+    return work_per_entry * dealii::Utilities::MPI::sum<double>(value_.size(), communicator_) +
+           work_per_operation * n_operations;
+  }
+
+  double DirectSolver::work_of_estimate(const LinearSystem &system)
+  {
+    const double half = dealii::Utilities::MPI::sum<double>(system.bulk.values().size(), system.layout->communicator);
+    return work_per_analysed_entry * (system.symmetric ? half : 2. * half);
+  }
+
+  double DirectSolver::estimate(const LinearSystem &system)
+  {
+    analyse(system, FlatVectors(system));
+    return work(instance_->mumps.rinfog[0]);
   }
 
   void DirectSolver::apply_inverse(std::vector<double> &x)
@@ -288,20 +321,9 @@ namespace Nodus
                                            std::vector<BlockVector>               &solutions,
                                            double)
   {
-    const BlockLayout &layout = *system.layout;
-    if (layout.size() >= static_cast<DoFIndex>(std::numeric_limits<int>::max()))
-      throw SolverFailure("Direct solver: too many unknowns for MUMPS, use 'Type = block'.",
-                          SolverFailure::Kind::linear_solver);
-    const bool same_size = size_ == static_cast<int>(layout.size());
-    size_                = layout.size();
-
-    if (symmetric_ != system.symmetric)
-      instance_.reset(); // MUMPS takes the kind of matrix once
-    symmetric_ = system.symmetric;
-
     const FlatVectors flat(system);
-    const bool        changed = collect_entries(system, flat);
-    factorise(changed || !same_size);
+    analyse(system, flat);
+    factorise();
 
     Report report;
     solutions.resize(rhs.size());
@@ -313,8 +335,7 @@ namespace Nodus
     }
 
     DMUMPS_STRUC_C &mumps = instance_->mumps;
-    report.work           = work_per_entry * dealii::Utilities::MPI::sum<double>(value_.size(), communicator_) +
-                  work_per_operation * mumps.rinfog[2];
+    report.work           = work(mumps.rinfog[2]);
     if (symmetric_)
       report.negative_pivots = infog(mumps, 12) + coupled_.n_negative();
     std::vector<int> null_pivots(infog(mumps, 28));

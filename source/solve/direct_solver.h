@@ -27,6 +27,13 @@ namespace Nodus
                  double                                  relative_tolerance) override;
     bool   solve_again(const LinearSystem &system, const BlockVector &rhs, BlockVector &solution) override;
 
+    /// LinearSolver::Report::work that solve() would take, from the symbolic analysis, which is kept for it.
+    /// Collective.
+    /// @throws SolverFailure
+    double estimate(const LinearSystem &system);
+    /// That of estimate() itself, without contact; solve() takes more. Collective.
+    static double work_of_estimate(const LinearSystem &system);
+
   private:
     struct Instance;
 
@@ -34,7 +41,13 @@ namespace Nodus
     /// pattern differs from that of the previous call, on any rank.
     bool collect_entries(const LinearSystem &system, const FlatVectors &flat);
 
-    void factorise(bool pattern_changed);
+    /// Refills the entries, and looks for an order of elimination where their pattern is new.
+    void analyse(const LinearSystem &system, const FlatVectors &flat);
+    void factorise();
+    /// @throws SolverFailure with what MUMPS says.
+    [[noreturn]] void give_up();
+    /// LinearSolver::Report::work of an elimination with so many operations.
+    double work(double n_operations) const;
 
     /// With the factors at hand. @returns the relative residual.
     double substitute(const FlatVectors &flat, const BlockVector &rhs, BlockVector &solution);

@@ -11,9 +11,6 @@ namespace Nodus
   {
     /// Displacements up to which costs do not matter: the direct solver says more about a system.
     constexpr DoFIndex largest_small = 1500;
-    /// Displacements up to which one direct solution is worth knowing its cost: 3 to 7 iterative ones for 50000
-    /// (contrib/studies/scaling/size.md).
-    constexpr DoFIndex largest_open = 20000;
   } // namespace
 
   void BlockLayout::reinit(BlockVector &v) const
@@ -46,7 +43,7 @@ namespace Nodus
       if (pair.scheme == ContactPairParameters::Scheme::integration_point ||
           pair.weights == ContactPairParameters::Weights::consistent)
         iterative = Type::block;
-    return {n_displacements <= largest_open, iterative};
+    return {n_displacements <= largest_direct, iterative};
   }
 
   std::string LinearSolverChoice::text() const

@@ -75,6 +75,9 @@ namespace Nodus
   /// LinearSolver::Report::work of Krylov iterations with multigrid, and of setting the hierarchy up. Collective.
   double iterative_work(const LinearSystem &system, unsigned int n_set_up, unsigned int n_iterations);
 
+  /// Displacements up to which the direct solver may be taken where it was not asked for.
+  constexpr DoFIndex largest_direct = 150000;
+
   /// What a model may take, as the parameters ask for.
   struct LinearSolverChoice
   {
