@@ -32,11 +32,19 @@ namespace Nodus
     /// ... and without, in a pair without a closed site, where nothing may be pressed in.
     constexpr double tolerated_unseen_depth = 0.05;
 
-    /// ... and in contact: the nodal scheme lets smaller faces of a master come in between nodes, means hold them
-    /// better.
+    /// ... and in contact: points hold the faces between them; in between nodes smaller faces of a master come through;
+    /// of means corners may be off.
     double tolerated_depth(const ContactPairParameters &pair)
     {
-      return pair.scheme == ContactPairParameters::Scheme::nodal ? 0.2 : 0.1;
+      switch (pair.scheme)
+      {
+        case ContactPairParameters::Scheme::integration_point:
+          return 0.1;
+        case ContactPairParameters::Scheme::nodal:
+          return 0.2;
+        default:
+          return largest_depth;
+      }
     }
     /// Of the mean face of the side with the larger ones, where displacements of both sides are prescribed: facets of
     /// curved surfaces overlap a little.

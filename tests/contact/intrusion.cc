@@ -16,13 +16,6 @@ namespace
 {
   constexpr double tolerated = 0.1;
 
-  std::string text(const Intrusion::Node &node)
-  {
-    std::ostringstream s;
-    s << (node.side == slave_side ? "slave" : "master") << " node (" << node.X << ')';
-    return s.str();
-  }
-
   /// Moves the upper body, which has nodes above z = 1.
   std::vector<Point> moved(const ContactFixture &f, const Vector3 &by, const Vector3 &all = Vector3(), double turn = 0.)
   {
@@ -44,9 +37,11 @@ namespace
     const Intrusion found = find_intrusions(*f.surfaces, before, now, 0., 1., {tolerated})[0];
     if (!root())
       return;
-    std::cout << what << ": depth " << (found.depth < 1e-12 ? 0. : found.depth);
-    if (found.depth > 1e-12)
-      std::cout << " at " << text(found.deepest);
+    const SurfaceSide side  = found.depth[master_side] > found.depth[slave_side] ? master_side : slave_side;
+    const double      depth = found.depth[side];
+    std::cout << what << ": depth " << (depth < 1e-12 ? 0. : depth);
+    if (depth > 1e-12)
+      std::cout << " at " << (side == slave_side ? "slave" : "master") << " node (" << found.deepest[side] << ')';
     std::cout << ", passed " << (found.passed > 0 ? "yes" : "no") << std::endl;
   }
 
