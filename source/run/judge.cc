@@ -36,15 +36,8 @@ namespace Nodus
     /// of means corners may be off.
     double tolerated_depth(const ContactPairParameters &pair)
     {
-      switch (pair.scheme)
-      {
-        case ContactPairParameters::Scheme::integration_point:
-          return 0.1;
-        case ContactPairParameters::Scheme::nodal:
-          return 0.2;
-        default:
-          return largest_depth;
-      }
+      using Scheme = ContactPairParameters::Scheme;
+      return pair.scheme == Scheme::integration_point ? 0.1 : pair.scheme == Scheme::nodal ? 0.2 : largest_depth;
     }
     /// Of the mean face of the side with the larger ones, where displacements of both sides are prescribed: facets of
     /// curved surfaces overlap a little.

@@ -256,12 +256,12 @@ namespace Nodus
       give_up();
   }
 
-  void DirectSolver::give_up()
+  void DirectSolver::give_up(const std::string &where)
   {
-    const std::string message = "Direct solver: MUMPS error " + std::to_string(infog(instance_->mumps, 1)) + ": " +
-                                meaning(instance_->mumps) + ".";
+    const DMUMPS_STRUC_C &mumps = instance_->mumps;
+    const std::string message = "MUMPS error " + std::to_string(infog(mumps, 1)) + where + ": " + meaning(mumps) + ".";
     instance_.reset(); // gives the memory back; the next system starts afresh
-    throw SolverFailure(message, SolverFailure::Kind::linear_solver);
+    throw SolverFailure("Direct solver: " + message, SolverFailure::Kind::linear_solver);
   }
 
   double DirectSolver::work(const double n_operations) const
@@ -290,12 +290,7 @@ namespace Nodus
     mumps.lrhs                = coupled_.size();
     mumps.rhs                 = y.data(); // only read and written on rank 0
     if (!instance_->run(3))
-    {
-      const std::string message = "Direct solver: MUMPS error " + std::to_string(infog(mumps, 1)) +
-                                  " in the substitution: " + meaning(mumps) + ".";
-      instance_.reset();
-      throw SolverFailure(message, SolverFailure::Kind::linear_solver);
-    }
+      give_up(" in the substitution");
     coupled_.solve(y, x);
     MPI_Bcast(x.data(), size_, MPI_DOUBLE, 0, communicator_);
   }

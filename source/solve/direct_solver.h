@@ -45,7 +45,7 @@ namespace Nodus
     void analyse(const LinearSystem &system, const FlatVectors &flat);
     void factorise();
     /// @throws SolverFailure with what MUMPS says.
-    [[noreturn]] void give_up();
+    [[noreturn]] void give_up(const std::string &where = "");
     /// LinearSolver::Report::work of an elimination with so many operations.
     double work(double n_operations) const;
 
