@@ -208,7 +208,7 @@ namespace Nodus
     return dealii::Utilities::MPI::max(changed ? 1 : 0, communicator_) != 0;
   }
 
-  void DirectSolver::analyse(const LinearSystem &system, const FlatVectors &flat)
+  bool DirectSolver::take(const LinearSystem &system, const FlatVectors &flat)
   {
     if (system.layout->size() >= static_cast<DoFIndex>(std::numeric_limits<int>::max()))
       throw SolverFailure("Direct solver: too many unknowns for MUMPS, use 'Type = block'.",
@@ -218,9 +218,12 @@ namespace Nodus
     if (symmetric_ != system.symmetric)
       instance_.reset(); // MUMPS takes the kind of matrix once
     symmetric_ = system.symmetric;
+    return collect_entries(system, flat) || !same_size;
+  }
 
-    const bool pattern_changed = collect_entries(system, flat) || !same_size;
-    const auto timer           = time_set_up();
+  void DirectSolver::set_up(const bool pattern_changed, const bool with_factors)
+  {
+    const auto timer = time_set_up();
     if (!instance_)
       instance_ = std::make_unique<Instance>(communicator_, symmetric_);
     DMUMPS_STRUC_C &mumps = instance_->mumps;
@@ -240,16 +243,14 @@ namespace Nodus
         give_up();
       instance_->analysed = true;
     }
-  }
+    if (!with_factors)
+      return;
 
-  void DirectSolver::factorise()
-  {
-    const auto             timer        = time_set_up();
     constexpr unsigned int max_attempts = 6;
     bool                   success      = instance_->run(2);
-    for (unsigned int i = 1; i < max_attempts && !success && asks_for_more_space(instance_->mumps); ++i)
+    for (unsigned int i = 1; i < max_attempts && !success && asks_for_more_space(mumps); ++i)
     {
-      icntl(instance_->mumps, 14) *= 2;
+      icntl(mumps, 14) *= 2;
       success = instance_->run(2);
     }
     if (!success)
@@ -278,7 +279,7 @@ namespace Nodus
 
   double DirectSolver::estimate(const LinearSystem &system)
   {
-    analyse(system, FlatVectors(system));
+    set_up(take(system, FlatVectors(system)), false);
     return work(instance_->mumps.rinfog[0]);
   }
 
@@ -317,8 +318,7 @@ namespace Nodus
                                            double)
   {
     const FlatVectors flat(system);
-    analyse(system, flat);
-    factorise();
+    set_up(take(system, flat), true);
 
     Report report;
     solutions.resize(rhs.size());

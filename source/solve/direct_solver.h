@@ -41,9 +41,10 @@ namespace Nodus
     /// pattern differs from that of the previous call, on any rank.
     bool collect_entries(const LinearSystem &system, const FlatVectors &flat);
 
-    /// Refills the entries, and looks for an order of elimination where their pattern is new.
-    void analyse(const LinearSystem &system, const FlatVectors &flat);
-    void factorise();
+    /// Its size and entries. @returns whether their pattern is new.
+    bool take(const LinearSystem &system, const FlatVectors &flat);
+    /// Looks for an order of elimination where the pattern is new, and eliminates if it is to.
+    void set_up(bool pattern_changed, bool with_factors);
     /// @throws SolverFailure with what MUMPS says.
     [[noreturn]] void give_up(const std::string &where = "");
     /// LinearSolver::Report::work of an elimination with so many operations.

@@ -58,6 +58,7 @@ namespace
     p.output.checkpoint_interval  = 0;
     // several sets of sticking sites balance, with forces 4e-4 apart: which one is found depends on the path
     p.newton.largest_forcing_term = 1e-4;
+    p.linear_solver.type          = LinearSolverParameters::Type::direct;
     return p;
   }
 

@@ -39,6 +39,7 @@ namespace
                                condition("load", Type::traction, region(2, {z_plus}), {2}, {"-t"})};
     p.contact_pairs         = {averaged(region(1, {z_plus}), region(2, {z_minus}), 0.)};
     p.load_stepping         = {{1.}, {1}};
+    p.linear_solver.type    = LinearSolverParameters::Type::direct; // pressures to 1e-8 are asked for
     p.output.write_vtu      = false;
     p.output.results_folder = "barely_covered_results";
     ContactProblem problem(p, world(), log());

@@ -63,6 +63,7 @@ namespace
     p.contact_pairs[0].surface_measure = ContactPairParameters::SurfaceMeasure::reference;
     p.contact_pairs[0].scheme          = ContactPairParameters::Scheme::averaged;
     p.contact_pairs[0].start.status    = ContactPairParameters::InitialStatus::closed;
+    p.linear_solver.type               = LinearSolverParameters::Type::direct; // answers to 1e-9 are asked for
     p.output.results_folder            = "schemes_results";
     return p;
   }
