@@ -32,8 +32,8 @@ namespace Nodus
     /// ... and without, in a pair without a closed site, where nothing may be pressed in.
     constexpr double tolerated_unseen_depth = 0.05;
 
-    /// ... and in contact: points hold the faces between them; in between nodes smaller faces of a master come through;
-    /// of means corners may be off.
+    /// ... and in contact: points hold what is between them best; smaller faces of a master come in between the nodes
+    /// of the nodal scheme; where means are held corners may be off.
     double tolerated_depth(const ContactPairParameters &pair)
     {
       using Scheme = ContactPairParameters::Scheme;
@@ -338,7 +338,8 @@ namespace Nodus
     surfaces.gather(states_.committed.unknowns.block(0), before);
     surfaces.gather(unknowns_.block(0), now);
     std::vector<double>       adjusted(surfaces.n_pairs(), 0.); // where surfaces are apart or inside by intent
-    std::vector<double>       deepest, bulges;                  // that may be; of slave and master faces of each pair
+    std::vector<double>       deepest;                          // what may be, as a length
+    std::vector<double>       bulges;                           // of slave and of master faces of each pair in turn
     std::vector<unsigned int> closed(surfaces.n_pairs(), 0);
     const std::vector<double> overclosures =
         site_overclosures(surfaces, contact_->status(), contact_->pressure(), contact_->state().lambda);

@@ -16,7 +16,8 @@ namespace Nodus
     /// The analysis of the direct solver may take this part of what was spent before.
     constexpr double part_of_estimate = 0.1;
     /// Systems that the iterative solver gets before its mean is compared, for the first one pays for the hierarchy of
-    /// several; it gets no more where it costs so many times what the direct one does, nor does a system count for more.
+    /// several; it gets no more where it costs so many times what the direct one does, nor does a system count for
+    /// more.
     constexpr unsigned int trial    = 3;
     constexpr double       hopeless = 2.;
     /// Weight of the last system in that mean.
