@@ -99,7 +99,7 @@ def check(folder, facts):
                 if pair.rows:
                     check_gaps(find, state, pair, row)
                 else:
-                    points.check_points(find, state, before, pair, row)
+                    points.check_points(find, state, pair, row)
                 check_friction(find, state, before, pair)
                 check_depth(find, state, pair)
             check_bodies(find, state, row_of)
@@ -227,7 +227,9 @@ def check_friction(find, state, before, pair):
         return
     law = (LAW_LOOPS if state.fixed_point else LAW) + 4 * geometry.SINGLE / mu  # tractions hold single precision
     if pair.keys.get("Weights") != "consistent":  # there the law holds between the nodes
-        over, turned = size - mu * pressure, np.abs(pressure) * pair.normal_spread  # a normal that is not known tilts the pressure
+        # a normal that is not known, or that a geometry loop has left behind (check_resultants), tilts pressure and friction
+        angle = pair.normal_spread + state.fixed_point * np.linalg.norm(pair.values["normal"] - pair.normal, axis=1)
+        over, turned = size - mu * pressure, (np.abs(pressure) + mu * size) * angle
         find.compare("beyond the cone", (over - turned) / (mu * largest), law, t, name)
         find.compare("slip within the cone", (np.abs(over) - turned)[status == 1] / (mu * largest), law, t, name)
     length_tolerance = LENGTH_LOOPS if state.fixed_point else LENGTH

@@ -54,63 +54,32 @@ def multipliers(points, pair, augmentation, found, regularised):
     return best
 
 
-def other_statuses(points, pair, augmentation, found, regularised, start):
-    """Statuses that contradict nowhere are not unique, because the pressure of a point jumps where it closes. start: what multipliers()
-    returns. Points change sides, those of a place together, where the laws fit better then; what is left has no contradiction, or is
-    not taken."""
-    d = np.where(found, points.d, 0)
-    at, closed, law = start
-    closed = closed.copy()
-    for _ in range(len(points.phi)):
-        before = law @ law
-        near = (points.phi[:, law > 0.1 * LAW] != 0).any(axis=1)
-        places = [np.flatnonzero(points.place == place) for place in np.unique(points.place[near])]
-        for place in places:
-            closed[place] = ~closed[place]
-            trial = solve(points, pair, augmentation, found, closed & found, regularised)
-            if trial[1] @ trial[1] < law @ law:
-                at, law = trial
-            else:
-                closed[place] = ~closed[place]
-        if law @ law == before:
-            break
-    closed &= found
-    fits = ((at - augmentation * d <= 0) & found == closed).all() and law.max() < start[2].max()
-    return (at, closed, law) if fits else start
-
-
-def best_partners(points, pair, augmentation, regularised, had, fits):
-    """multipliers() with the choice of partners that the files leave open: of points of which only the history tells whether they
-    have one. None has that belongs to a node without force, for it would be closed. The others begin with those that had one
-    in the last state (had) or would find one today, with the latter alone or with all, and change sides, first those of a place
-    together, then each, until no change makes the laws fit better, or they fit: fits(law, closed). Returns what multipliers() does and
-    who has a partner (q,)."""
-    idle = np.abs(pair.force).max(axis=1) == 0
-    unsure = points.unsure & (points.d > 0)
-    lost = unsure & (points.phi[:, idle] != 0).any(axis=1)
-    open_choices = np.flatnonzero(unsure & ~lost)
-    groups = [open_choices[points.place[open_choices] == place] for place in np.unique(points.place[open_choices])]
+def statuses(points, pair, augmentation, regularised, fit):
+    """multipliers() with the choices that the files leave open. Statuses that contradict nowhere are not unique, because the pressure of
+    a point jumps where it closes, and of some points only the history tells whether they have a partner: open, they need none. From
+    three choices of partners on, the place whose points reduce the misfit of the laws most changes sides, until all is as it should:
+    fit(at, closed, law). Taken is what has no contradiction; failing that, what multipliers() says with the partners of today."""
     ends = []
-    for start in (np.where(unsure, points.fresh | had, points.found), np.where(unsure, points.fresh, points.found), points.found):
-        found = start & ~lost
-        best = multipliers(points, pair, augmentation, found, regularised)
-        for _ in open_choices:
-            before = best[2] @ best[2]
-            if fits(best[2], best[1]):
+    for found in (points.found & (points.fresh | ~points.unsure), points.found & ~points.unsure, points.found):
+        at, closed, law = multipliers(points, pair, augmentation, found, regularised)
+        ends.append((at, closed, law))
+        for _ in range(len(points.phi)):
+            if fit(at, closed, law):
                 break
-            for group in groups + [[q] for q in open_choices]:
-                found[group] = ~found[group]
-                trial = multipliers(points, pair, augmentation, found, regularised)
-                if trial[2] @ trial[2] < best[2] @ best[2]:
-                    best = trial
-                else:
-                    found[group] = ~found[group]
-            if best[2] @ best[2] == before:
+            near = points.found & (points.phi[:, law > 0.1 * LAW] != 0).any(axis=1)
+            best = at, closed, law
+            for place in np.unique(points.place[near]):
+                trial = closed ^ (points.found & (points.place == place))
+                at_trial, law_trial = solve(points, pair, augmentation, points.found, trial, regularised)
+                if law_trial @ law_trial < best[2] @ best[2]:
+                    best = at_trial, trial, law_trial
+            if best[1] is closed:
                 break
-        ends.append((*best, found))
-        if fits(best[2], best[1]):
-            break
-    return min(ends, key=lambda end: end[2].max())
+            at, closed, law = best
+        pressed = points.found & (at - augmentation * np.where(points.found, points.d, 0) <= 0)
+        if fit(at, closed, law) and not (closed & ~pressed).any() and not (pressed & ~closed & ~points.unsure).any():
+            return at, closed, law
+    return ends[0]
 
 
 def bends(points, closed):
@@ -121,7 +90,14 @@ def bends(points, closed):
     return ((uses.T @ uses.astype(float) > 0) * bend[None]).max(axis=1)  # the multipliers of a face go together
 
 
-def check_points(find, state, before, pair, row):
+def beyond_friction(points, pair, mu, push):
+    """By how much the friction of each node is more than what the pressures of its points, push (q,), allow [of the largest] (k,)."""
+    friction = pair.force - (points.weighted * push[:, None]).T @ points.normal
+    limit = np.abs(points.weighted).T @ (mu * np.maximum(-push, 0))
+    return (np.linalg.norm(friction, axis=1) - limit) / (pair.area * np.abs(pair.pressure).max())
+
+
+def check_points(find, state, pair, row):
     """Depth of the points; Signorini's law in the mean; friction of each node at most what the pressures of its points allow."""
     t, name, mu = state.t, pair.name, state.case.facts["mu"]
     points = Points(pair)
@@ -130,31 +106,27 @@ def check_points(find, state, before, pair, row):
     find.compare("penetration of integration points beyond bulges [cells]", points.d[sure] / pair.cell - bulge, DEPTH, t, name)
     largest = np.abs(pair.pressure).max()
     if largest == 0:
-        pair.partners = points.fresh
         return
     materials = state.case.facts["materials"]
     young = min(float(materials[int(pair.keys[f"{role} body"]) - 1]["Young's modulus"]) for role in ("Slave", "Master"))
     tolerance = LAW_LOOPS if state.fixed_point else LAW
     augmentation = young / state.reference_sizes(pair)[0]
-    had = getattr(before.pairs[state.pairs.index(pair)], "partners", np.zeros_like(points.found))
     blur = augmentation * state.noise / largest  # gaps are known to the last digits of positions
-
-    def unexplained(law, closed):
-        return law - blur - mu * bends(points, closed)
-
-    def fits(law, closed):
-        return (unexplained(law, closed) <= tolerance).all()
-
     trials = []
     for regularised in (False, True)[: 1 + (int(row["regularised law"]) > 0)]:
-        at, closed, law, found = best_partners(points, pair, augmentation, regularised, had, fits)
-        if not fits(law, closed):
-            at, closed, law = other_statuses(points, pair, augmentation, found, regularised, (at, closed, law))
-        trials.append((at, closed, law, found, regularised))
-    values, closed, law, pair.partners, regularised = min(trials, key=lambda trial: trial[2].max())
-    find.compare("law of integration points, beyond round-off", unexplained(law, closed), tolerance, t, name)
-    push = closed * (values - (augmentation * np.where(closed, points.d, 0) if regularised else 0))
-    friction = pair.force - (points.weighted * push[:, None]).T @ points.normal
-    limit = np.abs(points.weighted).T @ (mu * np.maximum(-push, 0))
-    beyond = (np.linalg.norm(friction, axis=1) - limit) / (pair.area * largest)
-    find.compare("friction beyond that of the points", unexplained(beyond, closed), tolerance, t, name)
+
+        def misfits(at, closed, law):
+            push = closed * (at - (augmentation * np.where(closed, points.d, 0) if regularised else 0))
+            tilt = blur + mu * bends(points, closed)
+            return law - tilt, beyond_friction(points, pair, mu, push) - tilt
+
+        def fit(*state):
+            return max(misfit.max() for misfit in misfits(*state)) <= tolerance
+
+        found = statuses(points, pair, augmentation, regularised, fit)
+        trials.append(misfits(*found))
+        if fit(*found):
+            break
+    law, beyond = min(trials, key=lambda trial: max(misfit.max() for misfit in trial))
+    find.compare("law of integration points, beyond round-off", law, tolerance, t, name)
+    find.compare("friction beyond that of the points", beyond, tolerance, t, name)
