@@ -1,5 +1,4 @@
 #include "run/judge.h"
-#include "contact/site_values.h"
 #include "mesh/sides.h"
 #include "parallel/largest.h"
 #include "parallel/owned_values.h"
@@ -26,23 +25,6 @@ namespace Nodus
     constexpr double body_tolerance = 1e-6, pair_force_tolerance = 1e-9, pair_moment_tolerance = 1e-8;
     /// Of contradicted statuses, of the largest pressure or of the cone.
     constexpr double status_tolerance = 1e-3;
-    /// Of the mean face of the side with the smaller ones, with what facets of curved surfaces may overlap by: the arcs
-    /// that they cut off.
-    constexpr double largest_depth = 0.25;
-    /// ... and without, in a pair without a closed site, where nothing may be pressed in.
-    constexpr double tolerated_unseen_depth = 0.05;
-
-    /// ... and in contact: points hold what is between them best; smaller faces of a master come in between the nodes
-    /// of the nodal scheme; where means are held corners may be off.
-    double tolerated_depth(const ContactPairParameters &pair)
-    {
-      using Scheme = ContactPairParameters::Scheme;
-      return pair.scheme == Scheme::integration_point ? 0.1 : pair.scheme == Scheme::nodal ? 0.2 : largest_depth;
-    }
-    /// Of the mean face of the side with the larger ones, where displacements of both sides are prescribed: facets of
-    /// curved surfaces overlap a little.
-    constexpr double tolerated_held_depth = 1e-2, tolerated_held_slip = 1e-6;
-
     /// Whether the numbers of a State on this rank are finite.
     struct Finite
     {
@@ -285,112 +267,5 @@ namespace Nodus
         prescribed.add(next.get_inhomogeneity(i) / length_);
     verdict[Measure::prescribed] = {
         prescribed.on_all_ranks(model_.communicator), allowance * model_.parameters.newton.contact_tolerance, ""};
-  }
-
-  /// Where displacements of both sides are prescribed no multiplier can act: neither pressure nor friction is found
-  /// there, which is right as long as the sides do not meet, or do not slide.
-  void Judge::measure_held(Verdict &verdict) const
-  {
-    const ContactSurfaces    &surfaces = contact_->surfaces();
-    Status::Violation         depth, slip; // their counts are not used
-    const std::vector<double> overclosures =
-        site_overclosures(surfaces, contact_->status(), contact_->pressure(), contact_->state().lambda);
-    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
-    {
-      const SitePairing &pairing = contact_->pairing()[s];
-      const unsigned int p       = surfaces.pair(s);
-      if (!surfaces.is_owned(s) || !surfaces.has_status(s) ||
-          model_.parameters.contact_pairs[p].contact_law == ContactPairParameters::ContactLaw::tied)
-        continue;
-      const auto raise = [&](Status::Violation &violation, const double length)
-      {
-        if (length / larger_face_[p] > violation.value)
-        {
-          violation.value = length / larger_face_[p];
-          violation.site  = s;
-        }
-      };
-      if (pairing.held)
-        raise(depth, contact_->distance(s) - overclosures[s]); // > 0: inside
-      else if (pairing.found && contact_->status().contact(s) && contact_->status().friction(s))
-        for (unsigned int i = 0; i < 2; ++i)
-          if (!pairing.tangent_free[i])
-            raise(slip,
-                  std::abs(pairing.tangent[i] *
-                           prescribed_motion(
-                               surfaces, contact_->pairing(), contact_->jump(), contact_->state().increment, s)));
-    }
-    for (const auto &[measure, violation, tolerance] :
-         {std::make_tuple(Measure::held_depth, &depth, tolerated_held_depth),
-          std::make_tuple(Measure::held_slip, &slip, tolerated_held_slip)})
-    {
-      const auto largest = dealii::Utilities::MPI::min_max_avg(violation->value, model_.communicator);
-      if (largest.max_index != dealii::Utilities::MPI::this_mpi_process(model_.communicator))
-        violation->site = dealii::numbers::invalid_unsigned_int;
-      verdict[measure] = {largest.max, tolerance, contact_->locus(violation->site)};
-    }
-  }
-
-  void Judge::measure_intrusion(Verdict &verdict)
-  {
-    ContactSurfaces     &surfaces = contact_->surfaces();
-    std::vector<Vector3> before, now;
-    surfaces.gather(states_.committed.unknowns.block(0), before);
-    surfaces.gather(unknowns_.block(0), now);
-    std::vector<double>       adjusted(surfaces.n_pairs(), 0.); // where surfaces are apart or inside by intent
-    std::vector<double>       deepest;                          // what may be, as a length
-    std::vector<double>       bulges;                           // of slave and of master faces of each pair in turn
-    std::vector<unsigned int> closed(surfaces.n_pairs(), 0);
-    const std::vector<double> overclosures =
-        site_overclosures(surfaces, contact_->status(), contact_->pressure(), contact_->state().lambda);
-    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
-    {
-      const unsigned int p = surfaces.pair(s);
-      adjusted[p] = std::max(adjusted[p], std::abs(contact_->status().adjustment(s)) + std::max(overclosures[s], 0.));
-      closed[p] += surfaces.is_owned(s) && surfaces.has_status(s) && contact_->status().contact(s);
-    }
-    dealii::Utilities::MPI::max(adjusted, model_.communicator, adjusted);
-    dealii::Utilities::MPI::sum(closed, model_.communicator, closed);
-    for (unsigned int p = 0; p < adjusted.size(); ++p)
-    {
-      deepest.push_back(largest_depth * smaller_face_[p] + adjusted[p]);
-      bulges.push_back(contact_->geometry()->slave[p].bulge());
-      bulges.push_back(contact_->geometry()->master[p].bulge());
-    }
-    dealii::Utilities::MPI::max(bulges, model_.communicator, bulges);
-
-    const Increment             &increment  = equilibrium_.increment();
-    const std::vector<Intrusion> intrusions = find_intrusions(
-        surfaces, surfaces.positions(before), surfaces.positions(now), increment.begin, increment.end, deepest);
-    Verdict::Finding &depth = verdict[Measure::penetration], &unseen = verdict[Measure::unseen_depth],
-                     &passed = verdict[Measure::passed];
-    depth.tolerance          = largest_depth;
-    unseen.tolerance         = tolerated_unseen_depth;
-    for (unsigned int p = 0; p < intrusions.size(); ++p)
-    {
-      const auto      &pair      = model_.parameters.contact_pairs[p];
-      const Intrusion &intrusion = intrusions[p];
-      if (pair.contact_law == ContactPairParameters::ContactLaw::tied)
-        continue;
-      const auto where = [&](const SurfaceSide side, const Point &X)
-      {
-        return std::string(side == slave_side ? "slave" : "master") + " node " + coordinates(X) + " of " +
-               pair_label(model_.parameters.contact_pairs, p);
-      };
-      const double      tolerance = closed[p] > 0 ? tolerated_depth(pair) : tolerated_unseen_depth;
-      Verdict::Finding &finding   = closed[p] > 0 ? depth : unseen;
-      // smaller faces of a master bulge over those of the slave, which see their mean
-      const double ratio = std::max(1., surfaces.face_size(p) / surfaces.master_face_size(p));
-      for (const SurfaceSide side : {slave_side, master_side})
-      {
-        const double rise    = bulges[2 * p] + bulges[2 * p + 1] * (side == slave_side ? 1. : ratio * ratio);
-        const double overlap = std::min(rise, (largest_depth - tolerance) * smaller_face_[p]);
-        const double value   = (intrusion.depth[side] - adjusted[p] - overlap) / smaller_face_[p];
-        if (value / tolerance > finding.value / finding.tolerance)
-          finding = {value, tolerance, where(side, intrusion.deepest[side]), p};
-      }
-      if (intrusion.passed > 0)
-        passed.raise(passed.value + intrusion.passed, where(intrusion.first_passed.side, intrusion.first_passed.X), p);
-    }
   }
 } // namespace Nodus

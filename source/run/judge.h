@@ -42,6 +42,8 @@ namespace Nodus
     void   measure_held(Verdict &verdict) const;
     void   measure_intrusion(Verdict &verdict);
 
+    Status::Violation deepest_point(unsigned int pair) const;
+
     const Model                      &model_;
     const States                     &states_;
     const Equilibrium                &equilibrium_;

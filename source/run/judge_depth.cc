@@ -1,0 +1,199 @@
+#include "contact/site_values.h"
+#include "mesh/sides.h"
+#include "run/judge.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+namespace Nodus
+{
+  namespace
+  {
+    using Scheme = ContactPairParameters::Scheme;
+
+    // Depths are parts of the mean face of the side with the smaller ones.
+    /// With what facets of curved surfaces may overlap by: the arcs that they cut off.
+    constexpr double largest_depth = 0.25;
+    /// Without, in a pair without a closed site, where nothing may be pressed in.
+    constexpr double tolerated_unseen_depth = 0.05;
+    /// Of an integration point: closed ones keep their distance in the mean alone.
+    constexpr double tolerated_point_depth = 0.05;
+    /// Of nodes in contact: points hold what is between them best; smaller faces of a master come in between the nodes
+    /// of the nodal scheme; where means are held corners may be off.
+    double tolerated_depth(const Scheme scheme)
+    {
+      return scheme == Scheme::integration_point ? 0.1 : scheme == Scheme::nodal ? 0.2 : largest_depth;
+    }
+    /// Of the mean face of the side with the larger ones, where displacements of both sides are prescribed: facets of
+    /// curved surfaces overlap a little.
+    constexpr double tolerated_held_depth = 1e-2, tolerated_held_slip = 1e-6;
+
+    /// What the surfaces of a pair overlap by without a fault.
+    struct Overlap
+    {
+      double                adjusted = 0.;  ///< they are apart or inside by intent [length]
+      std::array<double, 2> rise{{0., 0.}}; ///< of arcs over their facets, for slave and for master nodes [length]
+      unsigned int          closed = 0;     ///< sites
+    };
+
+    std::vector<Overlap> allowed_overlaps(const ContactInterface    &contact,
+                                          const std::vector<double> &overclosures,
+                                          const MPI_Comm             communicator)
+    {
+      const ContactSurfaces    &surfaces = contact.surfaces();
+      std::vector<double>       lengths(3 * surfaces.n_pairs(), 0.); // adjustment, slave bulge, master bulge
+      std::vector<unsigned int> closed(surfaces.n_pairs(), 0);
+      for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+      {
+        const unsigned int p        = surfaces.pair(s);
+        double            &adjusted = lengths[3 * p];
+        adjusted = std::max(adjusted, std::abs(contact.status().adjustment(s)) + std::max(overclosures[s], 0.));
+        closed[p] += surfaces.is_owned(s) && surfaces.has_status(s) && contact.status().contact(s);
+      }
+      for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
+      {
+        lengths[3 * p + 1] = contact.geometry()->slave[p].bulge();
+        lengths[3 * p + 2] = contact.geometry()->master[p].bulge();
+      }
+      dealii::Utilities::MPI::max(lengths, communicator, lengths);
+      dealii::Utilities::MPI::sum(closed, communicator, closed);
+
+      std::vector<Overlap> overlaps;
+      for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
+      {
+        const double *const length = lengths.data() + 3 * p;
+        // smaller faces of a master bulge over those of the slave, which see their mean
+        const double ratio = std::max(1., surfaces.face_size(p) / surfaces.master_face_size(p));
+        overlaps.push_back({length[0], {{length[1] + length[2], length[1] + ratio * ratio * length[2]}}, closed[p]});
+      }
+      return overlaps;
+    }
+
+    /// The largest value of all ranks; the others know no site of it. Collective.
+    Status::Violation largest_violation(Status::Violation violation, const MPI_Comm communicator)
+    {
+      const auto largest = dealii::Utilities::MPI::min_max_avg(violation.value, communicator);
+      if (largest.max_index != dealii::Utilities::MPI::this_mpi_process(communicator))
+        violation.site = dealii::numbers::invalid_unsigned_int;
+      violation.value = largest.max;
+      return violation;
+    }
+  } // namespace
+
+  /// Where displacements of both sides are prescribed no multiplier can act: neither pressure nor friction is found
+  /// there, which is right as long as the sides do not meet, or do not slide.
+  void Judge::measure_held(Verdict &verdict) const
+  {
+    const ContactSurfaces    &surfaces = contact_->surfaces();
+    Status::Violation         depth, slip; // their counts are not used
+    const std::vector<double> overclosures =
+        site_overclosures(surfaces, contact_->status(), contact_->pressure(), contact_->state().lambda);
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+    {
+      const SitePairing &pairing = contact_->pairing()[s];
+      const unsigned int p       = surfaces.pair(s);
+      if (!surfaces.is_owned(s) || !surfaces.has_status(s) ||
+          model_.parameters.contact_pairs[p].contact_law == ContactPairParameters::ContactLaw::tied)
+        continue;
+      const auto raise = [&](Status::Violation &violation, const double length)
+      {
+        if (length / larger_face_[p] > violation.value)
+        {
+          violation.value = length / larger_face_[p];
+          violation.site  = s;
+        }
+      };
+      if (pairing.held)
+        raise(depth, contact_->distance(s) - overclosures[s]); // > 0: inside
+      else if (pairing.found && contact_->status().contact(s) && contact_->status().friction(s))
+        for (unsigned int i = 0; i < 2; ++i)
+          if (!pairing.tangent_free[i])
+            raise(slip,
+                  std::abs(pairing.tangent[i] *
+                           prescribed_motion(
+                               surfaces, contact_->pairing(), contact_->jump(), contact_->state().increment, s)));
+    }
+    for (const auto &[measure, of_rank, tolerance] :
+         {std::make_tuple(Measure::held_depth, &depth, tolerated_held_depth),
+          {Measure::held_slip, &slip, tolerated_held_slip}})
+    {
+      const Status::Violation violation = largest_violation(*of_rank, model_.communicator);
+      verdict[measure]                  = {violation.value, tolerance, contact_->locus(violation.site)};
+    }
+  }
+
+  void Judge::measure_intrusion(Verdict &verdict)
+  {
+    ContactSurfaces     &surfaces = contact_->surfaces();
+    std::vector<Vector3> before, now;
+    surfaces.gather(states_.committed.unknowns.block(0), before);
+    surfaces.gather(unknowns_.block(0), now);
+    const std::vector<double> overclosures =
+        site_overclosures(surfaces, contact_->status(), contact_->pressure(), contact_->state().lambda);
+    const std::vector<Overlap> allowed = allowed_overlaps(*contact_, overclosures, model_.communicator);
+    std::vector<double>        deepest; // that a node may be before it has passed [length]
+    for (unsigned int p = 0; p < allowed.size(); ++p)
+      deepest.push_back(largest_depth * smaller_face_[p] + allowed[p].adjusted);
+
+    const Increment             &increment  = equilibrium_.increment();
+    const std::vector<Intrusion> intrusions = find_intrusions(
+        surfaces, surfaces.positions(before), surfaces.positions(now), increment.begin, increment.end, deepest);
+    Verdict::Finding &seen = verdict[Measure::penetration], &unseen = verdict[Measure::unseen_depth],
+                     &passed = verdict[Measure::passed];
+    seen.tolerance           = largest_depth;
+    unseen.tolerance         = tolerated_unseen_depth;
+    for (unsigned int p = 0; p < intrusions.size(); ++p)
+    {
+      const auto      &pair      = model_.parameters.contact_pairs[p];
+      const Intrusion &intrusion = intrusions[p];
+      if (pair.contact_law == ContactPairParameters::ContactLaw::tied)
+        continue;
+      const auto where = [&](const SurfaceSide side, const Point &X)
+      {
+        return std::string(side == slave_side ? "slave" : "master") + " node " + coordinates(X) + " of " +
+               pair_label(model_.parameters.contact_pairs, p);
+      };
+      const bool closed = allowed[p].closed > 0;
+      const auto raise =
+          [&](const double depth, const SurfaceSide side, const double tolerance, const std::string &there)
+      {
+        Verdict::Finding &finding = closed ? seen : unseen;
+        const double      overlap = std::min(allowed[p].rise[side], (largest_depth - tolerance) * smaller_face_[p]);
+        const double      value   = (depth - allowed[p].adjusted - overlap) / smaller_face_[p];
+        if (value / tolerance > finding.value / finding.tolerance)
+          finding = {value, tolerance, there, p};
+      };
+      for (const SurfaceSide side : {slave_side, master_side})
+        raise(intrusion.depth[side],
+              side,
+              closed ? tolerated_depth(pair.scheme) : tolerated_unseen_depth,
+              where(side, intrusion.deepest[side]));
+      if (pair.scheme == Scheme::integration_point)
+      {
+        const Status::Violation deepest_point = this->deepest_point(p);
+        raise(deepest_point.value, slave_side, tolerated_point_depth, contact_->locus(deepest_point.site));
+      }
+      if (intrusion.passed > 0)
+        passed.raise(passed.value + intrusion.passed, where(intrusion.first_passed.side, intrusion.first_passed.X), p);
+    }
+  }
+
+  /// Of the integration points of a pair that have a partner: how deep they are behind the master [length]. Collective.
+  Status::Violation Judge::deepest_point(const unsigned int pair) const
+  {
+    const ContactSurfaces &surfaces = contact_->surfaces();
+    Status::Violation      deepest;
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+      if (surfaces.is_owned(s) && surfaces.pair(s) == pair && contact_->pairing()[s].found &&
+          contact_->distance(s) > deepest.value)
+      {
+        deepest.value = contact_->distance(s);
+        deepest.site  = s;
+      }
+    return largest_violation(deepest, model_.communicator);
+  }
+} // namespace Nodus
