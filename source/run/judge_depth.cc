@@ -22,11 +22,21 @@ namespace Nodus
     constexpr double tolerated_unseen_depth = 0.05;
     /// Of an integration point: closed ones keep their distance in the mean alone.
     constexpr double tolerated_point_depth = 0.05;
-    /// Of nodes in contact: points hold what is between them best; smaller faces of a master come in between the nodes
-    /// of the nodal scheme; where means are held corners may be off.
-    double tolerated_depth(const Scheme scheme)
+    /// Of nodes in contact. Points hold what is between them best; smaller faces of a master come in between the nodes
+    /// of the nodal scheme; where means are held corners of the slave may be off, but nodes of the master, which the
+    /// means are taken over, less so.
+    double tolerated_depth(const Scheme scheme, const SurfaceSide side)
     {
-      return scheme == Scheme::integration_point ? 0.1 : scheme == Scheme::nodal ? 0.2 : largest_depth;
+      switch (scheme)
+      {
+        case Scheme::integration_point:
+          return 0.1;
+        case Scheme::nodal:
+          return 0.2;
+        case Scheme::averaged:
+          return side == slave_side ? largest_depth : 0.1;
+      }
+      return 0.;
     }
     /// Of the mean face of the side with the larger ones, where displacements of both sides are prescribed: facets of
     /// curved surfaces overlap a little.
@@ -170,7 +180,7 @@ namespace Nodus
       for (const SurfaceSide side : {slave_side, master_side})
         raise(intrusion.depth[side],
               side,
-              closed ? tolerated_depth(pair.scheme) : tolerated_unseen_depth,
+              closed ? tolerated_depth(pair.scheme, side) : tolerated_unseen_depth,
               where(side, intrusion.deepest[side]));
       if (pair.scheme == Scheme::integration_point)
       {

@@ -182,6 +182,7 @@ int main(int argc, char **argv)
     tamper("the upper block let down through the lower one", [&] { displace_body(1, 2, -2.); });
     tamper("the upper block pressed in", [&] { displace_body(1, 2, -0.2); });
     tamper("the upper block pressed in by 0.07 faces", [&] { displace_body(1, 2, -0.025); });
+    tamper("the upper block pressed in by 0.15 faces", [&] { displace_body(1, 2, -0.055); });
     tamper("the upper block pushed off sideways", [&] { displace_body(1, 0, 3.); });
     tamper("no pressure", [&] { scale_multipliers(1, 0.); });
     tamper("pressures a thousandth too large", [&] { scale_multipliers(1, 1.001); });
