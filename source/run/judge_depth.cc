@@ -198,7 +198,7 @@ namespace Nodus
     const ContactSurfaces &surfaces = contact_->surfaces();
     Status::Violation      deepest;
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
-      if (surfaces.is_owned(s) && surfaces.pair(s) == pair && contact_->pairing()[s].found &&
+      if (surfaces.is_owned(s) && surfaces.has_status(s) && surfaces.pair(s) == pair && contact_->pairing()[s].found &&
           contact_->distance(s) > deepest.value)
       {
         deepest.value = contact_->distance(s);
