@@ -26,16 +26,37 @@ class Points:
         self.turn = self.normal @ pair.normal.T  # cosines with the normals of the nodes
 
 
-def solve(points, pair, augmentation, found, closed, regularised):
-    """Pressures of the nodes (raw, negative in compression) that belong to the forces of the nodes and to statuses of the points (W4),
-    (55, 56), (F3). Returns lambda at the points (q,), and by how much the laws are off [of the largest pressure] (k,)."""
-    normal_force = (pair.force * pair.normal).sum(1)
-    d = augmentation * np.where(found, points.d, 0)[closed]
+def system(points, pair, augmentation, closed, regularised):
+    """Of the pressures of the nodes (raw, negative in compression) that belong to the forces of the nodes and to statuses of the points
+    (W4), (55, 56), (F3): matrix (k, k) and right-hand side (k,), and the laws, off @ pressures + gap = 0: off (k, k), gap (k,)."""
+    d = augmentation * np.where(closed, points.d, 0)[closed]
     turned = points.weighted[closed] * points.turn[closed]
     on, off = turned.T @ points.phi[closed], points.weighted[~closed].T @ points.phi[~closed]
     gap, push = points.weighted[closed].T @ d, turned.T @ d if regularised else 0
-    values = np.linalg.lstsq(on + off, normal_force - gap + push, rcond=1e-10)[0]
+    return on + off, (pair.force * pair.normal).sum(1) - gap + push, off, gap
+
+
+def solve(points, pair, augmentation, closed, regularised):
+    """Pressures at the points (q,), and by how much the laws are off [of the largest pressure] (k,)."""
+    matrix, rhs, off, gap = system(points, pair, augmentation, closed, regularised)
+    values = np.linalg.lstsq(matrix, rhs, rcond=1e-10)[0]
     return points.phi @ values, np.abs(off @ values + gap) / (pair.area * np.abs(pair.pressure).max())
+
+
+def best_changes(points, pair, augmentation, closed, regularised, places):
+    """Of places whose points change sides: those that leave the smallest misfit, best first, where the matrix stays as it is."""
+    matrix, rhs, off, gap = system(points, pair, augmentation, closed, regularised)
+    inverse = np.linalg.pinv(matrix, rcond=1e-10)
+    values, to_law, size = inverse @ rhs, off @ inverse, pair.area * np.abs(pair.pressure).max()
+    law, left = off @ values + gap, []
+    for place in places:
+        q = np.flatnonzero(points.found & (points.place == place))
+        sign, d, w = np.where(closed[q], -1, 1), augmentation * points.d[q], points.weighted[q]
+        more_gap = w.T @ (sign * d)
+        more = ((w * points.turn[q]).T @ (sign * d) if regularised else 0) - more_gap
+        at = points.phi[q] @ (values + inverse @ more)
+        left.append(np.linalg.norm((law + to_law @ more + more_gap - w.T @ (sign * at)) / size))
+    return [places[i] for i in np.argsort(left)]
 
 
 def multipliers(points, pair, augmentation, found, regularised):
@@ -44,7 +65,7 @@ def multipliers(points, pair, augmentation, found, regularised):
     d = np.where(found, points.d, 0)
     closed, best = found & (d > -1e-6 * pair.cell), (None, None, np.full(len(pair.nodes), np.inf))
     for _ in range(20):
-        at, law = solve(points, pair, augmentation, found, closed, regularised)
+        at, law = solve(points, pair, augmentation, closed, regularised)
         if law.max() < best[2].max():
             best = at, closed, law
         again = found & (at - augmentation * d <= 0)
@@ -66,16 +87,15 @@ def statuses(points, pair, augmentation, regularised, fit):
         for _ in range(len(points.phi)):
             if fit(at, closed, law):
                 break
-            near = points.found & (points.phi[:, law > 0.1 * LAW] != 0).any(axis=1)
-            best = at, closed, law
-            for place in np.unique(points.place[near]):
+            near = np.unique(points.place[points.found & (points.phi[:, law > 0.1 * LAW] != 0).any(axis=1)])
+            for place in best_changes(points, pair, augmentation, closed, regularised, near)[:3]:
                 trial = closed ^ (points.found & (points.place == place))
-                at_trial, law_trial = solve(points, pair, augmentation, points.found, trial, regularised)
-                if law_trial @ law_trial < best[2] @ best[2]:
-                    best = at_trial, trial, law_trial
-            if best[1] is closed:
+                at_trial, law_trial = solve(points, pair, augmentation, trial, regularised)
+                if law_trial @ law_trial < law @ law:
+                    at, closed, law = at_trial, trial, law_trial
+                    break
+            else:
                 break
-            at, closed, law = best
         pressed = points.found & (at - augmentation * np.where(points.found, points.d, 0) <= 0)
         if fit(at, closed, law) and not (closed & ~pressed).any() and not (pressed & ~closed & ~points.unsure).any():
             return at, closed, law
