@@ -14,7 +14,7 @@ namespace Nodus
     /// Iterations after which a direct solution is cheaper there.
     constexpr unsigned int most_iterations = 100;
     /// The analysis of the direct solver may take this part of what was spent before.
-    constexpr double part_of_estimate = 0.1;
+    constexpr double part_of_estimate = 0.2;
     /// Systems that the iterative solver gets before its mean is compared, for the first one pays for the hierarchy of
     /// several; it gets no more where it costs so many times what the direct one does, nor does a system count for
     /// more.
@@ -22,8 +22,10 @@ namespace Nodus
     constexpr double       hopeless = 2.;
     /// Weight of the last system in that mean.
     constexpr double weight = 0.3;
-    /// Systems of the direct solver after which the iterative one is tried again at the latest.
-    constexpr unsigned int longest_wait = 1024;
+    /// What the iterative solver takes more when it is tried again may be this part of what the direct one has taken
+    /// since; after so many systems it is tried in any case.
+    constexpr double       part_of_trial = 0.1;
+    constexpr unsigned int longest_wait  = 1024;
   } // namespace
 
   ChosenSolver::ChosenSolver(const Parameters                               &parameters,
@@ -82,7 +84,11 @@ namespace Nodus
   {
     in_a_row_ = of_direct == uses_direct_ ? in_a_row_ + 1 : 1;
     if (of_direct && !uses_direct_)
-      wait_ = std::min(2 * wait_, longest_wait);
+    {
+      const double dearer = trial * (iterative_work_ / direct_work_ - 1.);
+      wait_               = static_cast<unsigned int>(
+          std::clamp(dearer / part_of_trial, std::min(2. * wait_, 1. * longest_wait), 1. * longest_wait));
+    }
     else if (!of_direct)
     {
       const double counted = direct_work_ > 0. ? std::min(work, hopeless * direct_work_) : work;
@@ -94,7 +100,10 @@ namespace Nodus
 
   void ChosenSolver::estimate_direct(const LinearSystem &system)
   {
-    if (!choice_.open() || direct_work_ > 0. || DirectSolver::work_of_estimate(system) > part_of_estimate * spent_)
+    if (!choice_.open() || direct_work_ > 0.)
+      return;
+    const DirectSolver::LeastWork least = DirectSolver::least_work(system);
+    if (least.estimate > part_of_estimate * spent_ || least.solve > iterative_work_)
       return;
     try
     {

@@ -271,10 +271,10 @@ namespace Nodus
            work_per_operation * n_operations;
   }
 
-  double DirectSolver::work_of_estimate(const LinearSystem &system)
+  DirectSolver::LeastWork DirectSolver::least_work(const LinearSystem &system)
   {
     const double half = dealii::Utilities::MPI::sum<double>(system.bulk.values().size(), system.layout->communicator);
-    return work_per_analysed_entry * (system.symmetric ? half : 2. * half);
+    return {work_per_analysed_entry * (system.symmetric ? half : 2. * half), work_per_entry * half};
   }
 
   double DirectSolver::estimate(const LinearSystem &system)

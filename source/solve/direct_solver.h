@@ -31,8 +31,13 @@ namespace Nodus
     /// Collective.
     /// @throws SolverFailure
     double estimate(const LinearSystem &system);
-    /// That of estimate() itself, without contact; solve() takes more. Collective.
-    static double work_of_estimate(const LinearSystem &system);
+    /// That of estimate() itself, and what solve() takes of a symmetric system at least, both without contact.
+    /// Collective.
+    struct LeastWork
+    {
+      double estimate, solve;
+    };
+    static LeastWork least_work(const LinearSystem &system);
 
   private:
     struct Instance;
