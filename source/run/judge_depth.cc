@@ -16,15 +16,16 @@ namespace Nodus
     using Scheme = ContactPairParameters::Scheme;
 
     // Depths are parts of the mean face of the side with the smaller ones.
-    /// With what facets of curved surfaces may overlap by: the arcs that they cut off.
+    /// The largest depth of all, with what facets of curved surfaces may overlap by: the arcs that they cut off. The
+    /// other depths are without that.
     constexpr double largest_depth = 0.25;
-    /// Without, in a pair without a closed site, where nothing may be pressed in.
+    /// In a pair without a closed site nothing may be pressed in.
     constexpr double tolerated_unseen_depth = 0.05;
-    /// Of an integration point: closed ones keep their distance in the mean alone.
+    /// An integration point may be that deep, for closed ones keep their distance in the mean alone.
     constexpr double tolerated_point_depth = 0.05;
-    /// Of nodes in contact. Points hold what is between them best; smaller faces of a master come in between the nodes
-    /// of the nodal scheme; where means are held corners of the slave may be off, but nodes of the master, which the
-    /// means are taken over, less so.
+    /// A node may be that deep where there is contact. Points hold what is between them best; smaller faces of a master
+    /// come in between the nodes of the nodal scheme; where means are held corners of the slave may be off, but nodes
+    /// of the master, which the means are taken over, less so.
     double tolerated_depth(const Scheme scheme, const SurfaceSide side)
     {
       switch (scheme)
