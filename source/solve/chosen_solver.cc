@@ -14,7 +14,7 @@ namespace Nodus
     /// Iterations after which a direct solution is cheaper there.
     constexpr unsigned int most_iterations = 100;
     /// The analysis of the direct solver may take this part of what was spent before.
-    constexpr double part_of_estimate = 0.2;
+    constexpr double part_of_estimate = 0.1;
     /// Systems that the iterative solver gets before its mean is compared, for the first one pays for the hierarchy of
     /// several; it gets no more where it costs so many times what the direct one does, nor does a system count for
     /// more.
