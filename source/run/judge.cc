@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 namespace Nodus
@@ -25,6 +24,7 @@ namespace Nodus
     constexpr double body_tolerance = 1e-6, pair_force_tolerance = 1e-9, pair_moment_tolerance = 1e-8;
     /// Of contradicted statuses, of the largest pressure or of the cone.
     constexpr double status_tolerance = 1e-3;
+
     /// Whether the numbers of a State on this rank are finite.
     struct Finite
     {

@@ -42,7 +42,7 @@ namespace Nodus
     void   measure_held(Verdict &verdict) const;
     void   measure_intrusion(Verdict &verdict);
 
-    Status::Violation deepest_point(unsigned int pair) const;
+    std::vector<Status::Violation> deepest_points() const;
 
     const Model                      &model_;
     const States                     &states_;

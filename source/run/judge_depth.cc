@@ -145,8 +145,9 @@ namespace Nodus
     surfaces.gather(unknowns_.block(0), now);
     const std::vector<double> overclosures =
         site_overclosures(surfaces, contact_->status(), contact_->pressure(), contact_->state().lambda);
-    const std::vector<Overlap> allowed = allowed_overlaps(*contact_, overclosures, model_.communicator);
-    std::vector<double>        deepest; // that a node may be before it has passed [length]
+    const std::vector<Overlap>           allowed = allowed_overlaps(*contact_, overclosures, model_.communicator);
+    const std::vector<Status::Violation> points  = deepest_points();
+    std::vector<double>                  deepest; // that a node may be before it has passed [length]
     for (unsigned int p = 0; p < allowed.size(); ++p)
       deepest.push_back(largest_depth * smaller_face_[p] + allowed[p].adjusted);
 
@@ -184,27 +185,26 @@ namespace Nodus
               closed ? tolerated_depth(pair.scheme, side) : tolerated_unseen_depth,
               where(side, intrusion.deepest[side]));
       if (pair.scheme == Scheme::integration_point)
-      {
-        const Status::Violation deepest_point = this->deepest_point(p);
-        raise(deepest_point.value, slave_side, tolerated_point_depth, contact_->locus(deepest_point.site));
-      }
+        raise(points[p].value, slave_side, tolerated_point_depth, contact_->locus(points[p].site));
       if (intrusion.passed > 0)
         passed.raise(passed.value + intrusion.passed, where(intrusion.first_passed.side, intrusion.first_passed.X), p);
     }
   }
 
-  /// Of the integration points of a pair that have a partner: how deep they are behind the master [length]. Collective.
-  Status::Violation Judge::deepest_point(const unsigned int pair) const
+  /// Of each pair the integration point that is deepest behind the master, among those with a partner [length].
+  std::vector<Status::Violation> Judge::deepest_points() const
   {
-    const ContactSurfaces &surfaces = contact_->surfaces();
-    Status::Violation      deepest;
+    const ContactSurfaces         &surfaces = contact_->surfaces();
+    std::vector<Status::Violation> deepest(surfaces.n_pairs());
     for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
-      if (surfaces.is_owned(s) && surfaces.has_status(s) && surfaces.pair(s) == pair && contact_->pairing()[s].found &&
-          contact_->distance(s) > deepest.value)
-      {
-        deepest.value = contact_->distance(s);
-        deepest.site  = s;
-      }
-    return largest_violation(deepest, model_.communicator);
+      if (surfaces.is_owned(s) && surfaces.has_status(s) && contact_->pairing()[s].found)
+        if (Status::Violation &of_pair = deepest[surfaces.pair(s)]; contact_->distance(s) > of_pair.value)
+        {
+          of_pair.value = contact_->distance(s);
+          of_pair.site  = s;
+        }
+    for (Status::Violation &of_pair : deepest)
+      of_pair = largest_violation(of_pair, model_.communicator);
+    return deepest;
   }
 } // namespace Nodus

@@ -22,10 +22,8 @@ namespace Nodus
     constexpr double       hopeless = 2.;
     /// Weight of the last system in that mean.
     constexpr double weight = 0.3;
-    /// What the iterative solver takes more when it is tried again may be this part of what the direct one has taken
-    /// since; after so many systems it is tried in any case.
-    constexpr double       part_of_trial = 0.1;
-    constexpr unsigned int longest_wait  = 1024;
+    /// Systems of the direct solver after which the iterative one is tried again at the latest.
+    constexpr unsigned int longest_wait = 1024;
   } // namespace
 
   ChosenSolver::ChosenSolver(const Parameters                               &parameters,
@@ -84,11 +82,7 @@ namespace Nodus
   {
     in_a_row_ = of_direct == uses_direct_ ? in_a_row_ + 1 : 1;
     if (of_direct && !uses_direct_)
-    {
-      const double dearer = trial * (iterative_work_ / direct_work_ - 1.);
-      wait_               = static_cast<unsigned int>(
-          std::clamp(dearer / part_of_trial, std::min(2. * wait_, 1. * longest_wait), 1. * longest_wait));
-    }
+      wait_ = std::min(2 * wait_, longest_wait);
     else if (!of_direct)
     {
       const double counted = direct_work_ > 0. ? std::min(work, hopeless * direct_work_) : work;

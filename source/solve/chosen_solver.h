@@ -16,7 +16,7 @@ namespace Nodus
   /// With Type = automatic small models take the direct one and very large ones the iterative one. Those between begin
   /// with the iterative one, and take whichever costs less once the direct one is known by its symbolic analysis, which
   /// is made when ten times what it takes was spent and the direct one may be the cheaper of the two; the iterative
-  /// one is tried again after a number of systems that doubles each time, at least. Costs are counted
+  /// one is tried again after a number of systems that doubles each time. Costs are counted
   /// (LinearSolver::Report::work), not timed, so that a run can be repeated to the last digit. In models of moderate
   /// size systems of an increment that was cut back go to the direct one, which says more about them.
   ///

@@ -227,9 +227,12 @@ def check_friction(find, state, before, pair):
         return
     law = (LAW_LOOPS if state.fixed_point else LAW) + 4 * geometry.SINGLE / mu  # tractions hold single precision
     if pair.keys.get("Weights") != "consistent":  # there the law holds between the nodes
-        # a normal that is not known, or that a geometry loop has left behind (check_resultants), tilts pressure and friction
-        angle = pair.normal_spread + state.fixed_point * np.linalg.norm(pair.values["normal"] - pair.normal, axis=1)
-        over, turned = size - mu * pressure, (np.abs(pressure) + mu * size) * angle
+        held, limit = size, mu * pressure
+        if state.fixed_point:  # the normals of the pairing that the loop ended with; how far these are off is a check by itself
+            traction, normal = pair.shear - pressure[:, None] * pair.normal, pair.values["normal"]
+            across = (traction * normal).sum(1)
+            held, limit = np.linalg.norm(traction - across[:, None] * normal, axis=1), -mu * across
+        over, turned = held - limit, np.abs(pressure) * pair.normal_spread  # a normal that is not known tilts the pressure
         find.compare("beyond the cone", (over - turned) / (mu * largest), law, t, name)
         find.compare("slip within the cone", (np.abs(over) - turned)[status == 1] / (mu * largest), law, t, name)
     length_tolerance = LENGTH_LOOPS if state.fixed_point else LENGTH
