@@ -1,3 +1,4 @@
+#include "contact/second_pass.h"
 #include "contact/surface.h"
 #include "mesh/region.h"
 
@@ -7,7 +8,7 @@ namespace Nodus
 {
   std::string pair_label(const std::vector<ContactPairParameters> &pairs, const unsigned int pair)
   {
-    return "Contact pair " + std::to_string(pair + 1) +
+    return "Contact pair " + std::to_string(given_pair(pairs, pair) + 1) +
            (pairs[pair].name.empty() ? "" : " ('" + pairs[pair].name + "')");
   }
 

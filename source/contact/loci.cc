@@ -1,4 +1,5 @@
 #include "contact/loci.h"
+#include "contact/second_pass.h"
 #include "contact/surface.h"
 #include "mesh/sides.h"
 #include "parallel/all_gather.h"
@@ -46,8 +47,8 @@ namespace Nodus
       const auto        &name = pairs[p].name;
       first.emplace_back(surfaces.order(site),
                          (surfaces.is_point(site) ? "integration point " : "slave node ") +
-                             coordinates(surfaces.site_position(site)) + " of contact pair " + std::to_string(p + 1) +
-                             (name.empty() ? "" : " ('" + name + "')"));
+                             coordinates(surfaces.site_position(site)) + " of contact pair " +
+                             std::to_string(given_pair(pairs, p) + 1) + (name.empty() ? "" : " ('" + name + "')"));
     }
     std::vector<std::pair<DoFIndex, std::string>> all;
     for (const auto &part : all_gather(surfaces.layout().communicator, first))

@@ -63,6 +63,9 @@ namespace Nodus
     now_.slip_rate.assign(n, 0.);
     now_.friction_state.assign(n, {});
     for (unsigned int k = 0; k < n; ++k)
+      if (const auto &second = pairs[surfaces.pair(k)].second_pass)
+        now_.adjustment[k] = second->clearance;
+    for (unsigned int k = 0; k < n; ++k)
       if (const FrictionLaw *const law = limits_[surfaces.pair(k)].own_law())
         now_.friction_state[k] = law->initial_state();
     slip_length_.assign(n, 0.);

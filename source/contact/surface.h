@@ -286,7 +286,7 @@ namespace Nodus
     /// Number of the section that a pair is, or invalid_unsigned_int, and its axis.
     unsigned int section(const unsigned int pair) const
     {
-      return held_.section_of_pair.empty() ? dealii::numbers::invalid_unsigned_int : held_.section_of_pair[pair];
+      return pair < held_.section_of_pair.size() ? held_.section_of_pair[pair] : dealii::numbers::invalid_unsigned_int;
     }
     const Vector3 &axis(const unsigned int section) const
     {

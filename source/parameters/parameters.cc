@@ -13,6 +13,7 @@
 
 #include <deal.II/base/utilities.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 
@@ -269,7 +270,11 @@ namespace Nodus
 
   std::map<std::string, std::string> Parameters::model() const
   {
-    Parameters       copy(*this); // its values become the defaults of prm
+    Parameters copy(*this); // its values become the defaults of prm
+    auto      &pairs = copy.contact_pairs;
+    pairs.erase(
+        std::remove_if(pairs.begin(), pairs.end(), [](const auto &pair) { return pair.second_pass.has_value(); }),
+        pairs.end());
     ParameterHandler prm;
     copy.add_parameters(prm);
     std::map<std::string, std::string> values;

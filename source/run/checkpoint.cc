@@ -22,7 +22,7 @@ namespace Nodus
   {
     namespace fs = std::filesystem;
 
-    constexpr unsigned int format          = 20;
+    constexpr unsigned int format          = 21;
     constexpr auto         format_line     = "nodus checkpoint ";
     constexpr auto         last_line       = "end";
     constexpr auto         unfinished_mark = ".incomplete";

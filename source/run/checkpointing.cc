@@ -9,6 +9,8 @@
 #include <deal.II/grid/cell_id.h>
 
 #include <boost/serialization/map.hpp>
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
 
 #include <algorithm>
 #include <csignal>
@@ -26,16 +28,17 @@ namespace Nodus
     /// Shared by all ranks.
     struct Common
     {
-      std::map<std::string, std::string> model; ///< that the state belongs to
-      LoadStepping                       path{LoadSteppingParameters()};
-      std::vector<char>                  state; ///< common members of it
-      Tables::Rows                       rows;
-      VtuOutput::Series                  series;
+      std::map<std::string, std::string>           model;         ///< that the state belongs to
+      std::vector<std::pair<unsigned int, double>> second_passes; ///< pairs that have one, and clearances [length]
+      LoadStepping                                 path{LoadSteppingParameters()};
+      std::vector<char>                            state; ///< common members of it
+      Tables::Rows                                 rows;
+      VtuOutput::Series                            series;
 
       template <typename Archive>
       void serialize(Archive &archive, const unsigned int)
       {
-        archive &model &path &state &series;
+        archive &model &second_passes &path &state &series;
         archive &rows.contact &rows.reactions &rows.energies &rows.iterations &rows.masters &rows.rigid_bodies &rows
             .points &rows.lines &rows.preloads;
       }
@@ -146,7 +149,10 @@ namespace Nodus
   {
     const auto             timer    = journal_.profile.time(Phase::output);
     const ContactSurfaces &surfaces = model_.contact->surfaces();
-    Common                 common{keys(), path, pack_common(states_.committed), journal_.tables->rows(), {}};
+    Common                 common{keys(), {}, path, pack_common(states_.committed), journal_.tables->rows(), {}};
+    for (const ContactPairParameters &pair : model_.parameters.contact_pairs)
+      if (pair.second_pass)
+        common.second_passes.emplace_back(pair.second_pass->of, pair.second_pass->clearance);
     if (const VtuOutput *const vtu = results_.vtu())
       common.series = vtu->series();
 
@@ -207,6 +213,12 @@ namespace Nodus
                                  model_.communicator);
     path.continue_from(common.path);
     model_.look_ahead(path.planned_times());
+    if (!common.second_passes.empty())
+    {
+      model_.add_second_passes(common.second_passes, states_);
+      equilibrium_.begin_on_mesh();
+      results_.begin_on_mesh();
+    }
     match_mesh(found->pieces);
     read_pieces(found->pieces);
     unpack_common(common.state, states_.now);

@@ -27,7 +27,7 @@ namespace Nodus
   struct ContactProblem::Implementation
   {
     Implementation(const Parameters &p, MPI_Comm communicator, std::ostream &log)
-        : parameters(p)
+        : parameters(Model::with_room(p))
         , journal(parameters, communicator, log)
         , model(parameters, communicator, states)
         , path(parameters.load_stepping)
@@ -49,17 +49,17 @@ namespace Nodus
     void        report_energies();
     std::string report_profile(bool converged);
 
-    const Parameters parameters;
-    Journal          journal;
-    States           states;
-    Model            model;
-    LoadStepping     path;
-    Equilibrium      equilibrium;
-    IncrementLoops   loops;
-    Strategy         strategy;
-    Results          results;
-    MeshAdaptation   adaptation;
-    Checkpointing    checkpointing;
+    Parameters     parameters;
+    Journal        journal;
+    States         states;
+    Model          model;
+    LoadStepping   path;
+    Equilibrium    equilibrium;
+    IncrementLoops loops;
+    Strategy       strategy;
+    Results        results;
+    MeshAdaptation adaptation;
+    Checkpointing  checkpointing;
 
     bool                                      restart          = false; ///< asked for: continue from a checkpoint
     bool                                      detailed_profile = false; ///< asked for: with memory, and profile.json

@@ -1,5 +1,6 @@
 #include "run/failure_report.h"
 #include "contact/pair_scales.h"
+#include "contact/second_pass.h"
 #include "parallel/all_gather.h"
 #include "parallel/throw_everywhere.h"
 #include "run/unheld_bodies.h"
@@ -84,7 +85,7 @@ namespace Nodus
         const DoFIndex first = owned.nth_index_in_set(dim * n);
         if (const auto slave = slaves.find(first); slave != slaves.end())
         {
-          node.pair     = surfaces.pair(slave->second);
+          node.pair     = given_pair(p.model.parameters.contact_pairs, surfaces.pair(slave->second));
           node.statuses = p.journal.diagnosis.statuses(slave->second);
         }
         for (unsigned int c = 0; c < dim; ++c)
@@ -107,7 +108,7 @@ namespace Nodus
       for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
         if (surfaces.is_owned(s) && status.ledger(s).changes > 0)
         {
-          FailureEvidence::Site site{surfaces.pair(s),
+          FailureEvidence::Site site{given_pair(p.model.parameters.contact_pairs, surfaces.pair(s)),
                                      surfaces.is_point(s),
                                      surfaces.site_position(s),
                                      Point(),
@@ -124,16 +125,20 @@ namespace Nodus
       evidence.changing_sites  = first_of_all(items, n_worst_sites, p.model.communicator);
     }
 
+    /// Of the pairs that are given.
     void find_partners(const FailedRun &p, FailureEvidence &evidence)
     {
       const ContactInterface &contact  = *p.model.contact;
       const ContactSurfaces  &surfaces = p.model.contact->surfaces();
       const Status           &status   = contact.status();
       const Pairing          &pairing  = contact.pairing();
-      evidence.pairs.resize(surfaces.n_pairs());
-      std::vector<std::vector<Ranked<Point>>> lost(surfaces.n_pairs());
+      const auto             &keys     = p.model.parameters.contact_pairs;
+      const unsigned int      n_given =
+          std::count_if(keys.begin(), keys.end(), [](const auto &pair) { return !pair.second_pass; });
+      evidence.pairs.resize(n_given);
+      std::vector<std::vector<Ranked<Point>>> lost(n_given);
       const std::vector<double>               stiffness = p.model.stiffness();
-      for (unsigned int i = 0; i < surfaces.n_pairs(); ++i)
+      for (unsigned int i = 0; i < n_given; ++i)
       {
         evidence.pairs[i].face_size        = surfaces.face_size(i);
         evidence.pairs[i].master_face_size = surfaces.master_face_size(i);
@@ -142,7 +147,7 @@ namespace Nodus
       }
       for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
       {
-        if (!surfaces.is_owned(s) || !surfaces.has_status(s))
+        if (!surfaces.is_owned(s) || !surfaces.has_status(s) || surfaces.pair(s) >= n_given)
           continue;
         FailureEvidence::Pair &pair = evidence.pairs[surfaces.pair(s)];
         ++pair.sites;
@@ -166,7 +171,7 @@ namespace Nodus
         ++pair.lost;
         lost[surfaces.pair(s)].push_back({0., surfaces.order(s), surfaces.site_position(s)});
       }
-      for (unsigned int i = 0; i < surfaces.n_pairs(); ++i)
+      for (unsigned int i = 0; i < n_given; ++i)
       {
         FailureEvidence::Pair &pair = evidence.pairs[i];
         for (unsigned int *count : {&pair.sites, &pair.closed, &pair.slipping, &pair.unpaired, &pair.lost})
@@ -239,8 +244,11 @@ namespace Nodus
         if (surfaces.multiplier(k) == multiplier)
         {
           const unsigned int          node = surfaces.slave_nodes()[k].node;
-          FailureEvidence::Constraint constraint{
-              surfaces.pair(k), surfaces.nodes()[node].X, contact.pairing()[k].normal, !pressure, {}};
+          FailureEvidence::Constraint constraint{given_pair(p.model.parameters.contact_pairs, surfaces.pair(k)),
+                                                 surfaces.nodes()[node].X,
+                                                 contact.pairing()[k].normal,
+                                                 !pressure,
+                                                 {}};
           for (unsigned int c = 0; c < dim; ++c)
             constraint.prescribed[c] = surfaces.fixed(node, c);
           found.push_back({0., multiplier, constraint});
@@ -278,8 +286,9 @@ namespace Nodus
       find_partners(p, evidence);
       for (const Measure measure : {Measure::penetration, Measure::unseen_depth, Measure::passed})
         if (const Verdict::Finding &finding = p.journal.verdict[measure];
-            failure.kind() == SolverFailure::Kind::judged && !finding.holds() && finding.pair < evidence.pairs.size())
-          evidence.pairs[finding.pair].intruded = true;
+            failure.kind() == SolverFailure::Kind::judged && !finding.holds() &&
+            finding.pair < p.model.parameters.contact_pairs.size())
+          evidence.pairs[given_pair(p.model.parameters.contact_pairs, finding.pair)].intruded = true;
       if (failure.kind() == SolverFailure::Kind::over_constraint)
         find_repeated_constraint(p, evidence);
       for (const auto &motion : free_motions(p.model, p.states.now, increment.end))

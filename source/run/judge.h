@@ -25,6 +25,9 @@ namespace Nodus
     /// Of the state at hand at the end of the increment at hand. @p rest: whether a geometry loop has left something
     /// out of balance, and said so (IncrementLoops::rest()). Collective.
     Verdict judge(double rest = 0.);
+    /// How deep a second pass of a pair lets master nodes come: half of what is tolerated where there is contact,
+    /// behind what facets of the state that was judged last overlap by without a fault [length]. Collective.
+    double clearance(unsigned int pair) const;
     /// Of the state that was judged last.
     const InnerEnergy &inner_energy() const
     {

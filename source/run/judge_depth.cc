@@ -51,7 +51,9 @@ namespace Nodus
       unsigned int          closed = 0;     ///< sites
     };
 
+    /// @p geometry: as the surfaces are, or were made, if their arcs then are to count.
     std::vector<Overlap> allowed_overlaps(const ContactInterface    &contact,
+                                          const ContactGeometry     &geometry,
                                           const std::vector<double> &overclosures,
                                           const MPI_Comm             communicator)
     {
@@ -67,8 +69,8 @@ namespace Nodus
       }
       for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
       {
-        lengths[3 * p + 1] = contact.geometry()->slave[p].bulge();
-        lengths[3 * p + 2] = contact.geometry()->master[p].bulge();
+        lengths[3 * p + 1] = geometry.slave[p].bulge();
+        lengths[3 * p + 2] = geometry.master[p].bulge();
       }
       dealii::Utilities::MPI::max(lengths, communicator, lengths);
       dealii::Utilities::MPI::sum(closed, communicator, closed);
@@ -145,8 +147,9 @@ namespace Nodus
     surfaces.gather(unknowns_.block(0), now);
     const std::vector<double> overclosures =
         site_overclosures(surfaces, contact_->status(), contact_->pressure(), contact_->state().lambda);
-    const std::vector<Overlap>           allowed = allowed_overlaps(*contact_, overclosures, model_.communicator);
-    const std::vector<Status::Violation> points  = deepest_points();
+    const std::vector<Overlap> allowed =
+        allowed_overlaps(*contact_, *contact_->geometry(), overclosures, model_.communicator);
+    const std::vector<Status::Violation> points = deepest_points();
     std::vector<double>                  deepest; // that a node may be before it has passed [length]
     for (unsigned int p = 0; p < allowed.size(); ++p)
       deepest.push_back(largest_depth * smaller_face_[p] + allowed[p].adjusted);
@@ -189,6 +192,23 @@ namespace Nodus
       if (intrusion.passed > 0)
         passed.raise(passed.value + intrusion.passed, where(intrusion.first_passed.side, intrusion.first_passed.X), p);
     }
+  }
+
+  double Judge::clearance(const unsigned int pair) const
+  {
+    const ContactSurfaces       &surfaces = contact_->surfaces();
+    const auto                  &pairs    = model_.parameters.contact_pairs;
+    const ContactPairParameters &keys     = pairs[pair];
+    const std::vector<Point>     X        = surfaces.reference_positions(); // a dent is no arc
+    const ContactGeometry        as_made(pairs, surfaces, X);
+    const std::vector<double>    overclosures =
+        site_overclosures(surfaces, contact_->status(), contact_->pressure(), contact_->state().lambda);
+    const Overlap allowed = allowed_overlaps(*contact_, as_made, overclosures, model_.communicator)[pair];
+    const bool    facets  = surfaces.degree() == 1 && keys.surface == ContactPairParameters::Surface::faceted;
+    const double  nodes   = tolerated_depth(keys.scheme, master_side);
+    return allowed.adjusted + (facets ? allowed.rise[master_side] : 0.) +
+           0.5 * smaller_face_[pair] *
+               (keys.scheme == Scheme::integration_point ? std::min(nodes, tolerated_point_depth) : nodes);
   }
 
   /// Of each pair the integration point that is deepest behind the master, among those with a partner [length].

@@ -1,5 +1,6 @@
 #include "run/load_path.h"
 #include "base/text.h"
+#include "contact/second_pass.h"
 #include "run/unheld_bodies.h"
 
 #include <sstream>
@@ -46,8 +47,7 @@ namespace Nodus
       if (mesh_repetitions_ < adaptivity.repetitions && parts_.adaptation.adapt())
       {
         ++mesh_repetitions_;
-        judge_.begin_on_mesh();
-        parts_.strategy.begin_on_mesh();
+        begin_on_surfaces();
         parts_.journal.console.remark("the increment is repeated on the new mesh");
         continue;
       }
@@ -57,8 +57,7 @@ namespace Nodus
       if (adaptivity.interval > 0 && increment % adaptivity.interval == 0 && !path.finished() &&
           parts_.adaptation.adapt())
       {
-        judge_.begin_on_mesh();
-        parts_.strategy.begin_on_mesh();
+        begin_on_surfaces();
         restore_equilibrium();
       }
       if (interval > 0 && increment % interval == 0)
@@ -110,10 +109,11 @@ namespace Nodus
       unstable_ = parts_.equilibrium.unstable();
       const bool may_shrink =
           !parts_.strategy.begins_singular() && failure.kind() != SolverFailure::Kind::prescribed_contact;
+      const bool  held   = may_shrink && may_hold_master(failure.kind());
       const bool  relax  = may_shrink && may_relax(failure.kind());
-      const bool  halved = may_shrink && !relax && try_smaller(failure.kind());
+      const bool  halved = may_shrink && !relax && !held && try_smaller(failure.kind());
       std::string hint;
-      if (!halved && !relax)
+      if (!halved && !relax && !held)
         hint = report_failure({parts_.model,
                                parts_.journal,
                                parts_.states,
@@ -123,9 +123,10 @@ namespace Nodus
                               failure,
                               may_shrink);
       parts_.model.roll_back(parts_.states);
-      if (!halved && !relax)
+      if (!halved && !relax && !held)
         give_up(reason.str(), hint, may_shrink);
-      journal.console.remark(reason.str() + (relax                  ? "; the bodies are relaxed"
+      journal.console.remark(reason.str() + (held                   ? hold_master()
+                                             : relax                ? "; the bodies are relaxed"
                                              : path.ends_interval() ? "; it is tried to end there"
                                                                     : "; the increment is halved"));
       relaxing_ = relax;
@@ -142,6 +143,40 @@ namespace Nodus
       return parts_.path.cut_back();
     parts_.path.close_interval();
     return true;
+  }
+
+  /// Where the judge refuses a state for the depth of a pair that has not got a second pass, and may have one.
+  bool LoadPath::may_hold_master(const SolverFailure::Kind failure) const
+  {
+    const Verdict::Finding &depth = parts_.journal.verdict[Measure::penetration];
+    const Model            &model = parts_.model;
+    return failure == SolverFailure::Kind::judged && !depth.holds() &&
+           depth.pair < model.parameters.contact_pairs.size() && model.parameters.strategy.uses(Remedy::second_pass) &&
+           may_have_second_pass(model.parameters, model.contact->surfaces(), depth.pair);
+  }
+
+  /// Gives it that. @returns what happens, for the log.
+  std::string LoadPath::hold_master()
+  {
+    Model             &model = parts_.model;
+    const unsigned int pair  = parts_.journal.verdict[Measure::penetration].pair;
+    model.add_second_passes({{pair, judge_.clearance(pair)}}, parts_.states);
+    parts_.equilibrium.begin_on_mesh();
+    parts_.results.begin_on_mesh();
+    begin_on_surfaces();
+    ++second_passes_;
+    return text("; from now on nodes of the master may not be deeper than ",
+                model.parameters.contact_pairs.back().second_pass->clearance,
+                " (",
+                model.parameters.contact_pairs.back().name,
+                "), and the increment is repeated");
+  }
+
+  /// The mesh or the contact pairs have changed.
+  void LoadPath::begin_on_surfaces()
+  {
+    judge_.begin_on_mesh();
+    parts_.strategy.begin_on_mesh();
   }
 
   /// An increment that ends where an interval under arc length does is given its time: the equilibrium that was found
@@ -208,6 +243,8 @@ namespace Nodus
                 journal.counts.fallbacks == 0,
                 {increment.end, parts_.equilibrium.arc_length().last_motion()});
     journal.counts.cut_backs = std::exchange(cut_backs_, 0);
+    for (; second_passes_ > 0; --second_passes_)
+      journal.count(Remedy::second_pass);
     {
       const auto timer = journal.profile.time(Phase::output);
       parts_.results.update();

@@ -43,6 +43,9 @@ namespace Nodus
     void              begin_interval();
     bool              solve();
     bool              try_smaller(SolverFailure::Kind failure);
+    bool              may_hold_master(SolverFailure::Kind failure) const;
+    std::string       hold_master();
+    void              begin_on_surfaces();
     void              check_closing() const;
     void              finish(const std::function<void(unsigned int, double)> &callback);
     bool              may_relax(SolverFailure::Kind failure) const;
@@ -62,6 +65,7 @@ namespace Nodus
     bool         unstable_         = false; ///< ... for iterates of the last attempt at it were not stable
     bool         relaxed_          = false; ///< since the last increment that converged
     unsigned int mesh_repetitions_ = 0;     ///< of the increment at hand on a finer mesh
+    unsigned int second_passes_    = 0;     ///< added since the last increment that converged
   };
 } // namespace Nodus
 

@@ -4,8 +4,10 @@
 #include "contact/facets.h"
 #include "contact/initial_overlap.h"
 #include "contact/pair_scales.h"
+#include "contact/second_pass.h"
 #include "mesh/sides.h"
 #include "parallel/throw_everywhere.h"
+#include "run/state_vectors.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -76,7 +78,7 @@ namespace Nodus
     }
   } // namespace
 
-  Model::Model(const Parameters &p, MPI_Comm comm, States &states)
+  Model::Model(Parameters &p, MPI_Comm comm, States &states)
       : parameters(p)
       , communicator(comm)
       , bodies(parameters.bodies,
@@ -119,6 +121,23 @@ namespace Nodus
     stabilisation = std::make_unique<ViscousStabilisation>(bodies, materials, dof_handler, *mapping);
     contact.reset(); // what it refers to is made anew
     rigid_bodies.find_nodes(dof_handler, *mapping);
+    set_up_contact(now);
+    now.history = solid->start();
+
+    length_scale = 0.;
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+    {
+      const auto ends = bodies.bounding_box(b).get_boundary_points();
+      length_scale    = std::max(length_scale, 1e-6 * ends.first.distance(ends.second));
+    }
+    stiffest_cell = Nodus::stiffest_cell(bodies, materials, fe.degree, communicator);
+    contact->gather(now.unknowns, now.unknowns.block(0));
+  }
+
+  /// Nothing touches, and the unknowns are zero.
+  void Model::set_up_contact(State &now)
+  {
+    contact.reset(); // it sets the state as well
     contact = std::make_unique<ContactInterface>(parameters.contact_pairs,
                                                  stiffness(),
                                                  parameters.strategy,
@@ -136,16 +155,27 @@ namespace Nodus
     now.reaction.reinit(layout.owned[0], communicator);
     now.applied.reinit(layout.owned[0], communicator);
     now.motion.reinit(layout.owned[0], communicator);
-    now.history = solid->start();
+  }
 
-    length_scale = 0.;
-    for (unsigned int b = 0; b < bodies.size(); ++b)
+  Parameters Model::with_room(Parameters parameters)
+  {
+    parameters.contact_pairs.reserve(2 * parameters.contact_pairs.size());
+    return parameters;
+  }
+
+  void Model::add_second_passes(const std::vector<std::pair<unsigned int, double>> &passes, States &states)
+  {
+    const KeptState before(states.committed, *contact);
+    for (const auto &[pair, clearance] : passes)
     {
-      const auto ends = bodies.bounding_box(b).get_boundary_points();
-      length_scale    = std::max(length_scale, 1e-6 * ends.first.distance(ends.second));
+      AssertThrow(parameters.contact_pairs.size() < parameters.contact_pairs.capacity(), dealii::ExcInternalError());
+      parameters.contact_pairs.push_back(second_pass(parameters.contact_pairs, pair, clearance));
     }
-    stiffest_cell = Nodus::stiffest_cell(bodies, materials, fe.degree, communicator);
-    contact->gather(now.unknowns, now.unknowns.block(0));
+    states.now = states.committed;
+    set_up_contact(states.now);
+    before.restore(*contact, states.now);
+    states.committed = states.now;
+    roll_back(states);
   }
 
   /// Contact does not know how coupled faces move.

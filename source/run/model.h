@@ -24,8 +24,11 @@ namespace Nodus
   /// What is computed: bodies, mesh, degrees of freedom, materials, conditions and contact, without any algorithm.
   struct Model
   {
-    /// @p states outlive it; they are set to those at rest. Collective. @throws InputError
-    Model(const Parameters &parameters, MPI_Comm communicator, States &states);
+    /// @p states outlive it; they are set to those at rest. @p parameters have room for a second pass of each contact
+    /// pair (with_room()). Collective. @throws InputError
+    Model(Parameters &parameters, MPI_Comm communicator, States &states);
+    /// What refers to a pair stays valid where second passes are added.
+    static Parameters with_room(Parameters parameters);
 
     /// @throws InputError on every rank where nodes of coupled faces are part of contact surfaces.
     void refuse_coupled_contact() const;
@@ -49,6 +52,9 @@ namespace Nodus
     std::vector<double> resolved_interference(double t) const;
     /// All that holds in @p increment: conditions, stabilisation, the part of interference fits. Collective.
     void impose(const Increment &increment);
+    /// A second pass of these pairs, by number from 0 and with their clearances [length], on the same mesh. The state
+    /// at hand is the one that the increment began with then; nothing of the new pairs touches in it. Collective.
+    void add_second_passes(const std::vector<std::pair<unsigned int, double>> &passes, States &states);
     /// The state at hand becomes the one that the increment began with, and what refers to it follows. Collective.
     void roll_back(States &states);
 
@@ -60,7 +66,7 @@ namespace Nodus
     /// "3 bodies, 120 cells, ...", and a line for each contact pair.
     std::vector<std::string> summary() const;
 
-    const Parameters                           &parameters;
+    Parameters                                 &parameters; ///< as given, but for second passes of contact pairs
     MPI_Comm                                    communicator;
     Bodies                                      bodies;
     std::unique_ptr<const dealii::Mapping<dim>> mapping;
@@ -75,6 +81,9 @@ namespace Nodus
     std::unique_ptr<ContactInterface>           contact;
     double length_scale  = 0.; ///< displacements are measured against this when the step moves nothing [length]
     double stiffest_cell = 0.; ///< size over degree of the cell with the largest modulus times size [length]
+
+  private:
+    void set_up_contact(State &now);
   };
 } // namespace Nodus
 

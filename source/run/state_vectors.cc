@@ -278,6 +278,45 @@ namespace Nodus
       interface.stuck[s] = std::abs(sites[n * s + closed] - 1.) < 1e-6;
   }
 
+  KeptState::KeptState(const State &state, const ContactInterface &contact)
+  {
+    const ContactSurfaces &surfaces = contact.surfaces();
+    NodeVectors            vectors;
+    visit_members(state, vectors);
+    for (const Vector *const v : vectors.vectors)
+      of_nodes_.push_back(*v);
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+      if (surfaces.is_owned(s))
+      {
+        std::vector<double> &numbers = of_sites_[{surfaces.is_point(s), surfaces.order(s)}] = site_values(state, s);
+        if (surfaces.is_point(s))
+          continue;
+        numbers.resize(n_site_values() + widths().slave);
+        write_slave(state, surfaces, s, numbers.data() + n_site_values());
+      }
+  }
+
+  void KeptState::restore(const ContactInterface &contact, State &state) const
+  {
+    const ContactSurfaces &surfaces = contact.surfaces();
+    set_nodes(of_nodes_, state);
+    std::vector<double> sites(n_site_values() * surfaces.n_sites(), 0.);
+    for (unsigned int s = 0; s < surfaces.n_sites(); ++s)
+    {
+      const auto kept =
+          surfaces.is_owned(s) ? of_sites_.find({surfaces.is_point(s), surfaces.order(s)}) : of_sites_.end();
+      const std::vector<double> numbers = kept == of_sites_.end() ? site_values(state, s) : kept->second;
+      std::copy_n(numbers.begin(), n_site_values(), sites.begin() + n_site_values() * s);
+      if (numbers.size() == n_site_values())
+        continue;
+      SlaveReader reader{{}, s, surfaces.multiplier(s), numbers.data() + n_site_values()};
+      visit_members(state, reader);
+    }
+    for (unsigned int b = 1; b < 3; ++b)
+      state.unknowns.block(b).compress(dealii::VectorOperation::insert);
+    set_sites(std::move(sites), surfaces, state);
+  }
+
   std::vector<char> pack_common(const State &state)
   {
     std::ostringstream                             stream(std::ios::binary);

@@ -4,6 +4,8 @@
 #include "contact/contact_interface.h"
 #include "run/state.h"
 
+#include <map>
+#include <utility>
 #include <vector>
 
 // A State as vectors like the displacement, which checkpoints and new meshes take over, and back. What a slave node
@@ -35,6 +37,21 @@ namespace Nodus
   std::vector<Vector> interpolable_vectors(const State &state, const ContactInterface &contact);
   /// Takes them on another mesh, where no equilibrium has been found yet: pressures are kept, not forces. Collective.
   void take_interpolated(const std::vector<Vector> &vectors, const ContactInterface &contact, State &state);
+
+  /// A state on its mesh, while contact pairs are added behind those that there are.
+  class KeptState
+  {
+  public:
+    KeptState(const State &state, const ContactInterface &contact);
+    /// What is of new pairs stays as it is in @p state, and so do common members and histories. Collective.
+    void restore(const ContactInterface &contact, State &state) const;
+
+  private:
+    using Site = std::pair<bool, DoFIndex>; ///< whether it is a point, and ContactSurfaces::order()
+
+    std::vector<Vector>                 of_nodes_;
+    std::map<Site, std::vector<double>> of_sites_; ///< owned ones; of slave nodes their own numbers come behind
+  };
 
   /// What all ranks share, from one state to another.
   void copy_common(const State &from, State &to);

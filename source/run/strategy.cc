@@ -13,6 +13,7 @@
 // | increment      | left where it ends in no stable equilibrium  | Strategy::leave_if_unstable         |
 // | increment      | halves, at once where Newton comes nowhere   | Strategy::solve_increment           |
 // | increment      | halves; relaxation where not stable          | LoadPath::solve                     |
+// | increment      | second pass of a pair that is too deep       | LoadPath::hold_master               |
 // | geometry loop  | slow passes are mixed                        | IncrementLoops::geometry_converged  |
 // | threshold loop | slow passes are mixed                        | IncrementLoops::threshold_converged |
 // | statuses cycle | regularised law; frozen statuses             | Status::update, find_period         |

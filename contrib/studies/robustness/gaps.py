@@ -70,6 +70,7 @@ class Pair:
     def __init__(self, bodies, keys, slave_faces, master_faces):
         smoothed = keys.get("Surface", "smoothed") == "smoothed"
         self.keys, self.bodies, self.degree = keys, bodies, bodies.degree
+        self.clearance = 0.0  # that slave nodes may be inside [length]
         self.slave = geometry.Surface(bodies, slave_faces, smoothed)
         self.master = geometry.Surface(bodies, master_faces, smoothed)
         self.kind = keys.get("Normal", "averaged")
@@ -132,7 +133,7 @@ class Pair:
             sites = ties[0][chosen]
             face[sites], xi[sites], eta[sites] = ties[1][chosen], ties[2][chosen], ties[3][chosen]
         face, xi, eta = face[hit], xi[hit], eta[hit]
-        rows.distance[hit] = ((x[hit] - self.master.at(face, xi, eta)[0]) * rows.normal[hit]).sum(1)
+        rows.distance[hit] = ((x[hit] - self.master.at(face, xi, eta)[0]) * rows.normal[hit]).sum(1) - self.clearance
         rows.unsure[hit] |= rows.paired[hit] & (self.sunk(rows.distance[hit], over[hit], face) > TOLERANCE)
         rows.g[hit, self.nodes[hit]] = 1
         np.subtract.at(rows.g, (hit[:, None], self.master.faces[face]), shape(self.degree, xi, eta)[0])
@@ -332,7 +333,7 @@ class Pair:
         slope = share[:, None] * (y @ ((axes * factor) @ axes.T))
         g[masters] -= slope @ v
         if self.friction:
-            rows.turn[k, masters] = np.clip(n @ (g @ x), -limit, limit) * slope
+            rows.turn[k, masters] = np.clip(n @ (g @ x) - self.clearance, -limit, limit) * slope
 
 
 def choose(normals, preferred, sites, choices):

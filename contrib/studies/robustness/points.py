@@ -96,9 +96,19 @@ def statuses(points, pair, augmentation, regularised, fit):
                     break
             else:
                 break
-        pressed = points.found & (at - augmentation * np.where(points.found, points.d, 0) <= 0)
-        if fit(at, closed, law) and not (closed & ~pressed).any() and not (pressed & ~closed & ~points.unsure).any():
-            return at, closed, law
+        for _ in range(len(points.phi) if fit(at, closed, law) else 0):  # what contradicts itself follows, the worst first, while all fits
+            test = at - augmentation * np.where(points.found, points.d, 0)
+            wrong = points.found & np.where(closed, test > 0, (test <= 0) & ~points.unsure)
+            if not wrong.any():
+                return at, closed, law
+            for q in np.flatnonzero(wrong)[np.argsort(-np.abs(test[wrong]))]:
+                trial = closed ^ (np.arange(len(closed)) == q)
+                at_trial, law_trial = solve(points, pair, augmentation, trial, regularised)
+                if fit(at_trial, trial, law_trial):
+                    at, closed, law = at_trial, trial, law_trial
+                    break
+            else:
+                break
     return ends[0]
 
 

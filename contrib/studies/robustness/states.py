@@ -6,6 +6,7 @@ import gaps
 import geometry
 from common import nodus
 
+SECOND = ", second pass"
 FIELDS = ("CPRESS", "COPEN", "CSTATUS", "paired", "area", "normal", "friction_traction", "CSHEAR1", "CSHEAR2", "CSLIP1", "CSLIP2")
 
 
@@ -36,6 +37,19 @@ class Case:
             raise nodus.ResultsError(f"faces of boundary {side} are not in bodies.vtu")
         return own[np.unique(distance.argmin(axis=1))]
 
+    def pairs_at(self, run, t):
+        """Keys of the pairs in contact.csv at time t: those given, then the second passes that the run has added (theory, 34)."""
+        passes = [row["pair"] for row in run.table("contact.csv") if row["pair"].endswith(SECOND) and abs(float(row["time"]) - t) < 1e-9 * max(1, t)]
+        return self.pairs + [self.second_pass(next(p for p in self.pairs if p["Name"] + SECOND == name)) for name in passes]
+
+    @staticmethod
+    def second_pass(keys):
+        """Those of the pass that holds the master nodes of a pair."""
+        swapped = {"Slave": "Master", "Master": "Slave"}
+        second = {" ".join([swapped.get(key.split()[0], key.split()[0])] + key.split()[1:]): value for key, value in keys.items()}
+        second.update(Name=keys["Name"] + SECOND, Scheme="nodal", Weights="nodal quadrature")
+        return second
+
     @staticmethod
     def value(condition, t):
         """The three components that a condition prescribes at time t."""
@@ -64,7 +78,7 @@ class State:
             self.weights[c["Name"]] = np.zeros(len(self.u))
             for faces, n, area in self._faces[c["Name"]]:
                 np.add.at(self.weights[c["Name"]], faces, area[:, None] * n)
-        self.pairs = [self._pair(surface, number, keys) for number, keys in enumerate(case.pairs, 1)]
+        self.pairs = [self._pair(surface, number, keys) for number, keys in enumerate(case.pairs_at(run, t), 1)]
 
     def _integral(self, faces):
         """Nodes of faces, values of their functions and areas in the reference, at each Gauss point."""
@@ -95,6 +109,10 @@ class State:
             pair.whole = pair.area
         else:
             pair.rows = pair.compute(v["normal"], v["paired"] > 0.5)
+            if pair.name.endswith(SECOND) and (v["paired"] > 0.5).any():
+                # part of it is what surfaces bulged by when the run added the pass: it is read off gaps, and is the same for all nodes
+                pair.clearance = np.median((v["COPEN"] + pair.rows.distance)[v["paired"] > 0.5])
+                pair.rows = pair.compute(v["normal"], v["paired"] > 0.5)
             pair.normal, pair.area = pair.rows.normal, pair.rows.area
             pair.gap_spread, pair.area_spread, pair.normal_spread = pair.rows.spread()
             pair.whole = pair.rows.whole

@@ -19,10 +19,11 @@ namespace Nodus
     frozen_statuses,
     shorter_step,
     limited_step,
-    direct_solver
+    direct_solver,
+    second_pass
   };
 
-  constexpr std::array<const char *, 10> remedy_names = {{"three loops",
+  constexpr std::array<const char *, 11> remedy_names = {{"three loops",
                                                           "coupled threshold",
                                                           "relaxation",
                                                           "mixed geometry",
@@ -31,7 +32,8 @@ namespace Nodus
                                                           "frozen statuses",
                                                           "shorter step",
                                                           "limited step",
-                                                          "direct solver"}};
+                                                          "direct solver",
+                                                          "second pass"}};
 
   /// A value for each remedy: how often it was used, whether it may be.
   template <typename T>

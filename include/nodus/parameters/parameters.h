@@ -8,6 +8,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -222,6 +223,12 @@ namespace Nodus
       double      until = 0.; ///< from then on the length is what has been reached; 0: the force acts all the time
       Vector3     axis;       ///< of the bolt; zero: the mean normal of the slave faces
     };
+    /// The master nodes of another pair, which the run holds as well (source/contact/second_pass.h).
+    struct SecondPass
+    {
+      unsigned int of;        ///< number of that pair, from 0
+      double       clearance; ///< they may be that deep [length]
+    };
     std::string      name;
     RegionParameters slave;  ///< keys "Slave body", "Slave boundary ids", "Slave where"
     RegionParameters master; ///< keys "Master body", ...; that of the slave where the surface touches itself
@@ -258,6 +265,8 @@ namespace Nodus
     MasterSurfaceParameters master_surface; ///< instead of the master faces; keys "Master surface", ...
     Preload                 preload;        ///< keys "Preload", "Preload until", "Preload axis"
 
+    std::optional<SecondPass> second_pass; ///< of a pair that the run has added; no key
+
     /// One in closed form that moves with a rigid body of the model.
     bool has_carried_master() const
     {
@@ -292,7 +301,7 @@ namespace Nodus
     unsigned int                             degree = 1;                  ///< of the displacement, 1 or 2
     std::vector<BodyParameters>              bodies;
     std::vector<BoundaryConditionParameters> boundary_conditions;
-    std::vector<ContactPairParameters>       contact_pairs;
+    std::vector<ContactPairParameters>       contact_pairs; ///< those given; a run adds second passes behind them
     LoopParameters                           geometry_loop  = {15, 1e-5, LoopParameters::Mode::newton};
     LoopParameters                           threshold_loop = {30, 1e-4, LoopParameters::Mode::newton};
     LoopParameters                           status_loop    = {30, 0., LoopParameters::Mode::newton};
@@ -314,7 +323,7 @@ namespace Nodus
     static Parameters read(const std::string &file, const std::vector<std::string> &overrides = {});
 
     /// Values of the keys that may not change from a checkpoint to the restart, by "Section/Key": discretization,
-    /// bodies, boundary conditions and contact pairs.
+    /// bodies, boundary conditions and contact pairs, as given.
     std::map<std::string, std::string> model() const;
 
     /// The reference of all parameters in Markdown (`nodus --document`).
