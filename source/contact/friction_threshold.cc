@@ -1,4 +1,5 @@
 #include "contact/status.h"
+#include "parallel/largest.h"
 #include "parallel/throw_everywhere.h"
 
 #include <deal.II/base/mpi.h>
@@ -41,10 +42,7 @@ namespace Nodus
         if (d > change.value)
           change = {d, k};
       }
-    const auto worst = dealii::Utilities::MPI::min_max_avg(change.value, communicator);
-    if (worst.max_index != dealii::Utilities::MPI::this_mpi_process(communicator))
-      change.site = dealii::numbers::invalid_unsigned_int;
-    change.value = worst.max;
+    keep_largest(change.value, change.site, communicator);
     return change;
   }
 

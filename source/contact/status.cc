@@ -1,5 +1,6 @@
 #include "contact/status.h"
 #include "contact/pairing.h"
+#include "parallel/largest.h"
 #include <nodus/base/remedy.h>
 
 #include <deal.II/base/mpi.h>
@@ -383,10 +384,7 @@ namespace Nodus
         }
       }
     const MPI_Comm communicator = surfaces_.layout().communicator;
-    const auto     worst        = dealii::Utilities::MPI::min_max_avg(result.value, communicator);
-    if (worst.max_index != dealii::Utilities::MPI::this_mpi_process(communicator))
-      result.site = dealii::numbers::invalid_unsigned_int;
-    result.value = worst.max;
+    keep_largest(result.value, result.site, communicator);
     result.sites = dealii::Utilities::MPI::sum(result.sites, communicator);
     return result;
   }

@@ -31,6 +31,16 @@ namespace Nodus
     double value_ = 0.;
   };
 
+  /// Makes @p value, which @p site of this rank has, the largest of all ranks; on the others @p site becomes invalid.
+  /// Collective.
+  inline void keep_largest(double &value, unsigned int &site, const MPI_Comm communicator)
+  {
+    const auto all = dealii::Utilities::MPI::min_max_avg(value, communicator);
+    if (all.max_index != dealii::Utilities::MPI::this_mpi_process(communicator))
+      site = dealii::numbers::invalid_unsigned_int;
+    value = all.max;
+  }
+
   /// Of the entries of a vector. Collective.
   inline double largest_entry(const Vector &v)
   {

@@ -1,5 +1,6 @@
 #include "contact/site_values.h"
 #include "mesh/sides.h"
+#include "parallel/largest.h"
 #include "run/judge.h"
 
 #include <deal.II/base/mpi.h>
@@ -52,10 +53,11 @@ namespace Nodus
     };
 
     /// @p geometry: as the surfaces are, or were made, if their arcs then are to count.
-    std::vector<Overlap> allowed_overlaps(const ContactInterface    &contact,
-                                          const ContactGeometry     &geometry,
-                                          const std::vector<double> &overclosures,
-                                          const MPI_Comm             communicator)
+    std::vector<Overlap> allowed_overlaps(const std::vector<ContactPairParameters> &pairs,
+                                          const ContactInterface                   &contact,
+                                          const ContactGeometry                    &geometry,
+                                          const std::vector<double>                &overclosures,
+                                          const MPI_Comm                            communicator)
     {
       const ContactSurfaces    &surfaces = contact.surfaces();
       std::vector<double>       lengths(3 * surfaces.n_pairs(), 0.); // adjustment, slave bulge, master bulge
@@ -74,6 +76,12 @@ namespace Nodus
       }
       dealii::Utilities::MPI::max(lengths, communicator, lengths);
       dealii::Utilities::MPI::sum(closed, communicator, closed);
+      for (unsigned int p = 0; p < surfaces.n_pairs(); ++p) // both passes see the same surfaces
+        if (const auto &second = pairs[p].second_pass)
+        {
+          closed[second->of] += closed[p];
+          closed[p] = closed[second->of];
+        }
 
       std::vector<Overlap> overlaps;
       for (unsigned int p = 0; p < surfaces.n_pairs(); ++p)
@@ -84,16 +92,6 @@ namespace Nodus
         overlaps.push_back({length[0], {{length[1] + length[2], length[1] + ratio * ratio * length[2]}}, closed[p]});
       }
       return overlaps;
-    }
-
-    /// The largest value of all ranks; the others know no site of it. Collective.
-    Status::Violation largest_violation(Status::Violation violation, const MPI_Comm communicator)
-    {
-      const auto largest = dealii::Utilities::MPI::min_max_avg(violation.value, communicator);
-      if (largest.max_index != dealii::Utilities::MPI::this_mpi_process(communicator))
-        violation.site = dealii::numbers::invalid_unsigned_int;
-      violation.value = largest.max;
-      return violation;
     }
   } // namespace
 
@@ -134,8 +132,8 @@ namespace Nodus
          {std::make_tuple(Measure::held_depth, &depth, tolerated_held_depth),
           {Measure::held_slip, &slip, tolerated_held_slip}})
     {
-      const Status::Violation violation = largest_violation(*of_rank, model_.communicator);
-      verdict[measure]                  = {violation.value, tolerance, contact_->locus(violation.site)};
+      keep_largest(of_rank->value, of_rank->site, model_.communicator);
+      verdict[measure] = {of_rank->value, tolerance, contact_->locus(of_rank->site)};
     }
   }
 
@@ -147,8 +145,8 @@ namespace Nodus
     surfaces.gather(unknowns_.block(0), now);
     const std::vector<double> overclosures =
         site_overclosures(surfaces, contact_->status(), contact_->pressure(), contact_->state().lambda);
-    const std::vector<Overlap> allowed =
-        allowed_overlaps(*contact_, *contact_->geometry(), overclosures, model_.communicator);
+    const std::vector<Overlap> allowed = allowed_overlaps(
+        model_.parameters.contact_pairs, *contact_, *contact_->geometry(), overclosures, model_.communicator);
     const std::vector<Status::Violation> points = deepest_points();
     std::vector<double>                  deepest; // that a node may be before it has passed [length]
     for (unsigned int p = 0; p < allowed.size(); ++p)
@@ -203,7 +201,7 @@ namespace Nodus
     const ContactGeometry        as_made(pairs, surfaces, X);
     const std::vector<double>    overclosures =
         site_overclosures(surfaces, contact_->status(), contact_->pressure(), contact_->state().lambda);
-    const Overlap allowed = allowed_overlaps(*contact_, as_made, overclosures, model_.communicator)[pair];
+    const Overlap allowed = allowed_overlaps(pairs, *contact_, as_made, overclosures, model_.communicator)[pair];
     const bool    facets  = surfaces.degree() == 1 && keys.surface == ContactPairParameters::Surface::faceted;
     const double  nodes   = tolerated_depth(keys.scheme, master_side);
     return allowed.adjusted + (facets ? allowed.rise[master_side] : 0.) +
@@ -224,7 +222,7 @@ namespace Nodus
           of_pair.site  = s;
         }
     for (Status::Violation &of_pair : deepest)
-      of_pair = largest_violation(of_pair, model_.communicator);
+      keep_largest(of_pair.value, of_pair.site, model_.communicator);
     return deepest;
   }
 } // namespace Nodus

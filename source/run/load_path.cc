@@ -109,7 +109,7 @@ namespace Nodus
       unstable_ = parts_.equilibrium.unstable();
       const bool may_shrink =
           !parts_.strategy.begins_singular() && failure.kind() != SolverFailure::Kind::prescribed_contact;
-      const bool  held   = may_shrink && may_hold_master(failure.kind());
+      const auto  held   = may_shrink ? pair_to_hold(failure.kind()) : std::nullopt;
       const bool  relax  = may_shrink && may_relax(failure.kind());
       const bool  halved = may_shrink && !relax && !held && try_smaller(failure.kind());
       std::string hint;
@@ -125,7 +125,7 @@ namespace Nodus
       parts_.model.roll_back(parts_.states);
       if (!halved && !relax && !held)
         give_up(reason.str(), hint, may_shrink);
-      journal.console.remark(reason.str() + (held                   ? hold_master()
+      journal.console.remark(reason.str() + (held                   ? hold_master(*held)
                                              : relax                ? "; the bodies are relaxed"
                                              : path.ends_interval() ? "; it is tried to end there"
                                                                     : "; the increment is halved"));
@@ -145,30 +145,34 @@ namespace Nodus
     return true;
   }
 
-  /// Where the judge refuses a state for the depth of a pair that has not got a second pass, and may have one.
-  bool LoadPath::may_hold_master(const SolverFailure::Kind failure) const
+  /// The pair, of those that may have a second pass, for whose depth the judge has refused the state; none otherwise.
+  std::optional<unsigned int> LoadPath::pair_to_hold(const SolverFailure::Kind failure) const
   {
-    const Verdict::Finding &depth = parts_.journal.verdict[Measure::penetration];
-    const Model            &model = parts_.model;
-    return failure == SolverFailure::Kind::judged && !depth.holds() &&
-           depth.pair < model.parameters.contact_pairs.size() && model.parameters.strategy.uses(Remedy::second_pass) &&
-           may_have_second_pass(model.parameters, model.contact->surfaces(), depth.pair);
+    const Model &model = parts_.model;
+    if (failure != SolverFailure::Kind::judged || !model.parameters.strategy.uses(Remedy::second_pass))
+      return {};
+    for (const Measure measure : {Measure::penetration, Measure::unseen_depth})
+      if (const Verdict::Finding &depth = parts_.journal.verdict[measure];
+          !depth.holds() && depth.pair < model.parameters.contact_pairs.size() &&
+          may_have_second_pass(model.parameters, model.contact->surfaces(), depth.pair))
+        return depth.pair;
+    return {};
   }
 
-  /// Gives it that. @returns what happens, for the log.
-  std::string LoadPath::hold_master()
+  /// A second pass of it. @returns what happens, for the log.
+  std::string LoadPath::hold_master(const unsigned int pair)
   {
-    Model             &model = parts_.model;
-    const unsigned int pair  = parts_.journal.verdict[Measure::penetration].pair;
+    Model &model = parts_.model;
     model.add_second_passes({{pair, judge_.clearance(pair)}}, parts_.states);
     parts_.equilibrium.begin_on_mesh();
     parts_.results.begin_on_mesh();
     begin_on_surfaces();
     ++second_passes_;
+    const ContactPairParameters &second = model.parameters.contact_pairs.back();
     return text("; from now on nodes of the master may not be deeper than ",
-                model.parameters.contact_pairs.back().second_pass->clearance,
+                second.second_pass->clearance,
                 " (",
-                model.parameters.contact_pairs.back().name,
+                second.name,
                 "), and the increment is repeated");
   }
 

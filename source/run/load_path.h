@@ -12,6 +12,7 @@
 #include "run/strategy.h"
 
 #include <functional>
+#include <optional>
 
 namespace Nodus
 {
@@ -40,12 +41,14 @@ namespace Nodus
     void follow(const std::function<void(unsigned int, double)> &callback);
 
   private:
-    void              begin_interval();
-    bool              solve();
-    bool              try_smaller(SolverFailure::Kind failure);
-    bool              may_hold_master(SolverFailure::Kind failure) const;
-    std::string       hold_master();
-    void              begin_on_surfaces();
+    void        begin_interval();
+    bool        solve();
+    bool        try_smaller(SolverFailure::Kind failure);
+    std::string hold_master(unsigned int pair);
+    void        begin_on_surfaces();
+
+    std::optional<unsigned int> pair_to_hold(SolverFailure::Kind failure) const;
+
     void              check_closing() const;
     void              finish(const std::function<void(unsigned int, double)> &callback);
     bool              may_relax(SolverFailure::Kind failure) const;

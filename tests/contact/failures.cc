@@ -124,6 +124,7 @@ int main(int argc, char **argv)
               {"increment 2", "The last converged state is t = 0.5"});
 
   crushed.load_stepping.cut_back = true;
+  crushed.strategy.without       = {"second pass"}; // which would hold it until cells are turned inside out
   check_words("a block that the other one goes through in small increments",
               outcome(crushed),
               {"does not hold where it is measured anew", "penetration depth", "of Contact pair 1 ('pair')"});
@@ -166,12 +167,14 @@ int main(int argc, char **argv)
               outcome(held),
               {"prescribed penetration", "slave node ("});
 
-  // A punch of 0.2 into the top of a block of one cell: no node and no integration point of that is above the punch.
-  auto punch          = p;
-  punch.bodies        = {box("block", "1,1,1", {0, 0, 0}, {1, 1, 1}, 1000, 0.3),
-                         box("punch", "2,2,2", {0.4, 0.4, 1}, {0.6, 0.6, 1.2}, 1000, 0.3)};
-  punch.contact_pairs = {pair(region(1, {z_plus}), region(2, {z_minus}))};
-  auto &scheme        = punch.contact_pairs[0].scheme;
+  // A punch of 0.2 into the top of a block of one cell: no node and no integration point of that is above the punch. A
+  // second pass would hold it (contact/second_pass.cc).
+  auto punch             = p;
+  punch.strategy.without = {"second pass"};
+  punch.bodies           = {box("block", "1,1,1", {0, 0, 0}, {1, 1, 1}, 1000, 0.3),
+                            box("punch", "2,2,2", {0.4, 0.4, 1}, {0.6, 0.6, 1.2}, 1000, 0.3)};
+  punch.contact_pairs    = {pair(region(1, {z_plus}), region(2, {z_minus}))};
+  auto &scheme           = punch.contact_pairs[0].scheme;
   for (const auto kind : {ContactPairParameters::Scheme::nodal, ContactPairParameters::Scheme::integration_point})
   {
     scheme = kind;

@@ -179,7 +179,7 @@ int main(int argc, char **argv)
   check_words("what its index does not name does not count", restart(p), {"increment 7"});
 
   put(kept, checkpoints);
-  set_first_line(checkpoints / "000006" / "index", "nodus checkpoint 20\n");
+  set_first_line(checkpoints / "000006" / "index", "nodus checkpoint 21\n");
   check_words("an index with an empty line is passed over", restart(p), {"increment 5"});
 
   put(kept, checkpoints);

@@ -107,7 +107,11 @@ class Pair:
         np.minimum.at(over, ties[0], ties[4])  # whether a node has a partner depends on the face
         if self.keys["Scheme"] == "integration point":  # frames of the multipliers alone
             rows.normal[:] = self.node_normal
-            beyond = np.where(found & (over > 0.9 * TOLERANCE))[0]
+            hit = np.where(found)[0]
+            normals = self.node_normal[hit] if self.kind == "slave" else self.normal_of_master(face[hit], xi[hit], eta[hit])
+            depth, sunk = ((x[hit] - self.master.at(face[hit], xi[hit], eta[hit])[0]) * normals).sum(1), over.copy()
+            sunk[hit] = self.sunk(depth, over[hit], face[hit])  # which what had a partner does not mind
+            beyond = np.where(found & (np.maximum(over, sunk) > 0.9 * TOLERANCE))[0]
             use = found[choices[0]] & (over <= 2 * TOLERANCE)[choices[0]]
             choose(rows.normal, preferred, np.concatenate([choices[0][use], beyond]),
                    np.concatenate([choices[1][use], self.node_normal[beyond]]))  # fmt: skip
