@@ -238,6 +238,13 @@ namespace
     report("checkpoint", numbers(model, states.now), expected);
     report("checkpoint, committed", numbers(model, states.committed), expected);
 
+    const KeptState kept(states.committed, *model.contact);
+    scramble();
+    copy_common(states.committed, states.now);
+    states.now.history = states.committed.history;
+    kept.restore(*model.contact, states.now);
+    report("kept while pairs are added", numbers(model, states.now), expected);
+
     // a transfer keeps what does not refer to areas; statuses are those of own sites, and frames of nodes with a status
     const std::vector<Vector> vectors = interpolable_vectors(states.committed, *model.contact);
     scramble();
