@@ -168,6 +168,7 @@ namespace Nodus
     parts_.results.begin_on_mesh();
     begin_on_surfaces();
     ++second_passes_;
+    ++parts_.journal.used[Remedy::second_pass];
     const ContactPairParameters &second = model.parameters.contact_pairs.back();
     return text("; from now on nodes of the master may not be deeper than ",
                 second.second_pass->clearance,
@@ -246,9 +247,8 @@ namespace Nodus
     path.accept(journal.counts.newton,
                 journal.counts.fallbacks == 0,
                 {increment.end, parts_.equilibrium.arc_length().last_motion()});
-    journal.counts.cut_backs = std::exchange(cut_backs_, 0);
-    for (; second_passes_ > 0; --second_passes_)
-      journal.count(Remedy::second_pass);
+    journal.counts.cut_backs                     = std::exchange(cut_backs_, 0);
+    journal.counts.remedies[Remedy::second_pass] = std::exchange(second_passes_, 0);
     {
       const auto timer = journal.profile.time(Phase::output);
       parts_.results.update();

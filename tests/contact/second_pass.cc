@@ -14,26 +14,34 @@ namespace
 {
   using Scheme = ContactPairParameters::Scheme;
 
-  Parameters tilted_block(const Scheme scheme)
+  /// The lower body stands on the ground, the top of the upper one goes down by @p depth.
+  Parameters pressed(const BodyParameters &lower, const BodyParameters &upper, const std::string &depth)
   {
     Parameters p;
-    p.bodies = {box("plate", "5,3,2", {-1.25, -0.75, -0.8}, {1.25, 0.75, 0}, 1000, 0.3),
-                box("block", "3,3,2", {-0.55, -0.45, 0}, {0.45, 0.45, 0.5}, 1000, 0.3)};
-    for (BodyParameters &body : p.bodies)
-      body.material.law = MaterialParameters::Law::neo_hookean;
-    p.boundary_conditions         = {hold("ground", region(1, {z_minus}), {0, 1, 2}),
-                                     condition("top",
+    p.bodies              = {lower, upper};
+    p.boundary_conditions = {hold("ground", region(1, {z_minus}), {0, 1, 2}),
+                             condition("top",
                                        BoundaryConditionParameters::Type::displacement,
                                        region(2, {z_plus}),
                                        {0, 1, 2},
-                                       {"0", "0", "-0.01*t - 0.25*t*(x+0.55)"})};
+                                       {"0", "0", "-(" + depth + ")"})};
+    p.output.write_vtu    = false;
+    return p;
+  }
+
+  Parameters tilted_block(const Scheme scheme)
+  {
+    Parameters p = pressed(box("plate", "5,3,2", {-1.25, -0.75, -0.8}, {1.25, 0.75, 0}, 1000, 0.3),
+                           box("block", "3,3,2", {-0.55, -0.45, 0}, {0.45, 0.45, 0.5}, 1000, 0.3),
+                           "0.01*t + 0.25*t*(x+0.55)");
+    for (BodyParameters &body : p.bodies)
+      body.material.law = MaterialParameters::Law::neo_hookean;
     ContactPairParameters on_edge = pair(region(1, {z_plus}), region(2, {z_minus}), 0.3);
     on_edge.scheme                = scheme;
     on_edge.surface               = ContactPairParameters::Surface::faceted; // which depths are told from
     on_edge.normal                = ContactPairParameters::Normal::averaged;
     p.contact_pairs               = {on_edge};
     p.load_stepping.increments    = {4};
-    p.output.write_vtu            = false;
     p.output.checkpoint_interval  = 1;
     return p;
   }
@@ -137,16 +145,9 @@ int main(int argc, char *argv[])
 
   // A punch between the sites of a slave of one face: held at half of the 0.05 or 0.2 of its faces of 0.1, it is 0.1
   // less that deep, and the bodies are linear.
-  Parameters punch;
-  punch.bodies                   = {box("block", "1,1,1", {0, 0, 0}, {1, 1, 1}, 1000, 0.3),
-                                    box("punch", "2,2,2", {0.4, 0.4, 1}, {0.6, 0.6, 1.2}, 1000, 0.3)};
-  punch.boundary_conditions      = {hold("ground", region(1, {z_minus}), {0, 1, 2}),
-                                    condition("top",
-                                         BoundaryConditionParameters::Type::displacement,
-                                         region(2, {z_plus}),
-                                         {0, 1, 2},
-                                         {"0", "0", "-0.1*t"})};
-  punch.output.write_vtu         = false;
+  Parameters punch               = pressed(box("block", "1,1,1", {0, 0, 0}, {1, 1, 1}, 1000, 0.3),
+                             box("punch", "2,2,2", {0.4, 0.4, 1}, {0.6, 0.6, 1.2}, 1000, 0.3),
+                             "0.1*t");
   punch.load_stepping.increments = {2};
   punch.contact_pairs            = {pair(region(2, {z_minus}), region(1, {z_plus}))};
   const double force             = run(in_new_folder(punch, "second_pass_exchanged")).on_block[2];

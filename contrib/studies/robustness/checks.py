@@ -51,6 +51,8 @@ RULES = 5e-3
 # around a node, so that nodes at corners and beside kinks are inside (0.056; 0.035). With the bulges: at most 0.25.
 DEPTH = {"nodal": (0.01, 0.2), "averaged": (0.1, 0.1), "integration point": (0.1, 0.1)}
 DEPTH_AT_ALL = 0.25
+# Of master nodes, of points where there are some: what the judge tolerates, of the smaller mean face.
+TOLERATED = {"nodal": 0.2, "averaged": 0.1, "integration point": 0.05}
 # Of the largest energy: tables in 12 digits (1e-7), slips as differences of displacements in single precision (4.5e-5).
 WORK, SLIP_WORK = 1e-5, 1e-4
 
@@ -102,7 +104,7 @@ def check(folder, facts):
                     points.check_points(find, state, pair, row)
                 check_friction(find, state, before, pair)
                 if pair.name.endswith(SECOND):
-                    find.compare("clearance of a second pass [cells]", pair.clearance / pair.cell, DEPTH_AT_ALL, t, pair.name)
+                    check_clearance(find, state, pair)
                 else:
                     check_depth(find, state, pair)
             check_bodies(find, state, row_of)
@@ -125,16 +127,14 @@ def check_tables(find, run, case):
         raise nodus.ResultsError("; ".join(find.violations()))
     written = [t for t in run.series("contact") if t > 0]
     missing = int(run.series("bodies").keys() != run.series("contact").keys())
-    asked = {"contact.csv": ("pair", None), "energy.csv": ("time", [None]),
-             "reactions.csv": ("condition", [c["Name"] for c in case.conditions if c["Type"] == "displacement"])}  # fmt: skip
-    for name, (column, wanted_always) in asked.items():
-        rows = 0
+    held = [c["Name"] for c in case.conditions if c["Type"] == "displacement"]
+    asked = {"contact.csv": ("pair", lambda t: [p["Name"] for p in case.pairs_at(run, t)]),
+             "energy.csv": ("time", lambda t: [None]), "reactions.csv": ("condition", lambda t: held)}  # fmt: skip
+    for name, (column, wanted_at) in asked.items():
+        missing += len(tables[name]) != sum(len(wanted_at(t)) for t in written)
         for t in written:
-            wanted = [p["Name"] for p in case.pairs_at(run, t)] if wanted_always is None else wanted_always
-            rows += len(wanted)
-            found = [r[column] for r in tables[name] if same_time(r, t)]
+            wanted, found = wanted_at(t), [r[column] for r in tables[name] if same_time(r, t)]
             missing += len(found) != 1 if name == "energy.csv" else sorted(found) != sorted(wanted)
-        missing += len(tables[name]) != rows
     find.compare("rows or states that are missing", missing, 0, 0)
     if missing:
         raise nodus.ResultsError("; ".join(find.violations()))
@@ -255,10 +255,10 @@ def check_friction(find, state, before, pair):
     cosine = (slip * pair.shear).sum(1)[moved] / (length[moved] * size[moved])
     if pair.keys.get("Weights") != "consistent":
         find.compare("slip not against friction [1 + cos]", 1 + cosine, 1e-5, t, name)
-    files = [np.column_stack([p.values[c] for c in ("CSLIP1", "CSLIP2")]) for p in (earlier(before, state, pair), pair) if p is not None]
-    files = files if len(files) == 2 else [np.zeros_like(files[0])] + files
-    change = np.linalg.norm(files[1] - files[0], axis=1)
-    off = np.abs(change - length) - spread - 2 * geometry.SINGLE * np.abs(files[1]).max()
+    slipped = lambda pair: np.column_stack([pair.values[c] for c in ("CSLIP1", "CSLIP2")])
+    now, old = slipped(pair), earlier(before, state, pair)
+    change = np.linalg.norm(now - (slipped(old) if old else 0), axis=1)
+    off = np.abs(change - length) - spread - 2 * geometry.SINGLE * np.abs(now).max()
     find.compare("CSLIP against the bodies [cells]", off[status > 0] / pair.cell, length_tolerance, t, name)
 
 
@@ -266,6 +266,17 @@ def earlier(before, state, pair):
     """A pair as it was in the state before, or None where the run has added it since."""
     number = state.pairs.index(pair)
     return before.pairs[number] if number < len(before.pairs) else None
+
+
+def check_clearance(find, state, pair):
+    """Of a second pass: half of what is tolerated, behind what facets rise (V2). No pair of random_cases.py is adjusted."""
+    first = next(p for p in state.case.pairs if p["Name"] + SECOND == pair.name)
+    expected = 0.5 * TOLERATED[first["Scheme"]] * min(state.reference_sizes(pair))
+    off = pair.clearance - expected
+    if first.get("Surface") != "faceted" or state.bodies.degree > 1:
+        find.compare("clearance of a second pass [cells]", abs(off) / pair.cell, LENGTH, state.t, pair.name)
+    find.compare("clearance of a second pass below that of theory [cells]", -off / pair.cell, LENGTH, state.t, pair.name)
+    find.compare("clearance of a second pass at all [cells]", pair.clearance / pair.cell, DEPTH_AT_ALL, state.t, pair.name)
 
 
 def check_depth(find, state, pair):

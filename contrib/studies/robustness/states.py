@@ -110,7 +110,7 @@ class State:
         else:
             pair.rows = pair.compute(v["normal"], v["paired"] > 0.5)
             if pair.name.endswith(SECOND) and (v["paired"] > 0.5).any():
-                # part of it is what surfaces bulged by when the run added the pass: it is read off gaps, and is the same for all nodes
+                # the rise of facets is part of it: it is read off gaps, and is the same for all nodes
                 pair.clearance = np.median((v["COPEN"] + pair.rows.distance)[v["paired"] > 0.5])
                 pair.rows = pair.compute(v["normal"], v["paired"] > 0.5)
             pair.normal, pair.area = pair.rows.normal, pair.rows.area
